@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:gstfocalstackinfo
+ * @short_description: caps and memory layout of focal stacks
+ *
+ * A focal stack is one buffer with N frames in exactly one memory, nearest plane first. Plane z is the
+ * GstVideoMeta with the id z; a buffer without such metas holds the frames one after the other in the
+ * format's default layout.
+ */
+#include "gstfocalstackinfo.h"
+
+#include "gstfocalstackmeta.h"
+
+static GstCaps *as_raw_caps(const GstCaps *caps)
+{
+    GstCaps *raw = gst_caps_copy(caps);
+
+    gst_structure_set_name(gst_caps_get_structure(raw, 0), "video/x-raw");
+    return raw;
+}
+
+/**
+ * gst_focal_stack_info_from_caps:
+ * @info: (out caller-allocates): the parsed caps
+ * @caps: fixed caps
+ *
+ * Returns: %FALSE if @caps are not those of a focal stack
+ */
+gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *caps)
+{
+    g_return_val_if_fail(gst_caps_is_fixed(caps), FALSE);
+
+    const GstStructure *structure = gst_caps_get_structure(caps, 0);
+    g_autoptr(GstCaps) raw = as_raw_caps(caps);
+    gint planes = 0;
+
+    if (!gst_structure_has_name(structure, GST_FOCAL_STACK_CAPS_NAME) ||
+        !gst_structure_get_int(structure, "planes", &planes) || planes < 2 ||
+        planes > GST_FOCAL_STACK_MAX_PLANES)
+        return FALSE;
+    info->planes = (guint)planes;
+    return gst_video_info_from_caps(&info->frame, raw);
+}
+
+/**
+ * gst_focal_stack_info_to_caps:
+ * @info: format, size, planes and rate
+ *
+ * Returns: (transfer full): the caps of such stacks
+ */
+GstCaps *gst_focal_stack_info_to_caps(const GstFocalStackInfo *info)
+{
+    GstCaps *caps = gst_video_info_to_caps(&info->frame);
+
+    gst_structure_set_name(gst_caps_get_structure(caps, 0), GST_FOCAL_STACK_CAPS_NAME);
+    gst_caps_set_simple(caps, "planes", G_TYPE_INT, (gint)info->planes, NULL);
+    return caps;
+}
+
+/**
+ * gst_focal_stack_info_get_size:
+ * @info: format, size and planes
+ *
+ * Returns: bytes of a stack in the default layout
+ */
+gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info)
+{
+    return GST_VIDEO_INFO_SIZE(&info->frame) * info->planes;
+}
+
+/* The last byte of a component's last row, which need not be padded to the stride. */
+static gsize component_end(const GstVideoInfo *info, guint plane, gsize offset, gint stride)
+{
+    gint component[GST_VIDEO_MAX_COMPONENTS];
+
+    gst_video_format_info_component(info->finfo, plane, component);
+    const gsize rows = GST_VIDEO_INFO_COMP_HEIGHT(info, component[0]);
+    const gsize row_bytes = (gsize)GST_VIDEO_INFO_COMP_WIDTH(info, component[0]) *
+                            GST_VIDEO_INFO_COMP_PSTRIDE(info, component[0]);
+
+    return offset + (rows - 1) * stride + row_bytes;
+}
+
+/**
+ * gst_focal_stack_info_locate_plane:
+ * @info: the stack's caps
+ * @buffer: a stack
+ * @plane: which plane, 0 is the nearest
+ * @offset: (out) (array fixed-size=4): byte offsets of its components in @buffer
+ * @stride: (out) (array fixed-size=4): their strides in bytes
+ * @error: where an error goes
+ *
+ * Finds a plane by its GstVideoMeta, or by the default layout where the buffer has none.
+ *
+ * Returns: %FALSE with @error set if the buffer does not hold the plane; the message names both sizes
+ */
+gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuffer *buffer, guint plane,
+                                           gsize offset[GST_VIDEO_MAX_PLANES],
+                                           gint stride[GST_VIDEO_MAX_PLANES], GError **error)
+{
+    g_return_val_if_fail(plane < info->planes, FALSE);
+
+    const GstVideoMeta *meta = gst_buffer_get_video_meta_id(buffer, (gint)plane);
+    const gsize size = gst_buffer_get_size(buffer);
+    gsize end = 0;
+
+    if (!meta && gst_buffer_get_video_meta(buffer)) {
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The stack has GstVideoMetas, but none for plane %u of %u", plane, info->planes);
+        return FALSE;
+    }
+    for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(&info->frame); i++) {
+        const gsize frame = GST_VIDEO_INFO_SIZE(&info->frame) * plane;
+
+        offset[i] = meta ? meta->offset[i] : frame + GST_VIDEO_INFO_PLANE_OFFSET(&info->frame, i);
+        stride[i] = meta ? meta->stride[i] : GST_VIDEO_INFO_PLANE_STRIDE(&info->frame, i);
+        end = MAX(end, component_end(&info->frame, i, offset[i], stride[i]));
+    }
+    if (end > size) {
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The stack has %" G_GSIZE_FORMAT
+                    " bytes, but its caps (%u planes of %dx%d %s) need %" G_GSIZE_FORMAT,
+                    size, info->planes, GST_VIDEO_INFO_WIDTH(&info->frame),
+                    GST_VIDEO_INFO_HEIGHT(&info->frame), GST_VIDEO_INFO_NAME(&info->frame),
+                    meta ? end : gst_focal_stack_info_get_size(info));
+        return FALSE;
+    }
+    return TRUE;
+}
+
+/**
+ * gst_focal_stack_info_add_video_metas:
+ * @info: the stack's caps
+ * @buffer: a writable stack in the default layout
+ *
+ * Adds a GstVideoMeta a plane, with the plane's number as id.
+ */
+void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuffer *buffer)
+{
+    const GstVideoInfo *frame = &info->frame;
+
+    for (guint z = 0; z < info->planes; z++) {
+        gsize offset[GST_VIDEO_MAX_PLANES];
+        for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(frame); i++)
+            offset[i] = GST_VIDEO_INFO_SIZE(frame) * z + GST_VIDEO_INFO_PLANE_OFFSET(frame, i);
+
+        GstVideoMeta *meta = gst_buffer_add_video_meta_full(
+            buffer, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_INFO_FORMAT(frame), GST_VIDEO_INFO_WIDTH(frame),
+            GST_VIDEO_INFO_HEIGHT(frame), GST_VIDEO_INFO_N_PLANES(frame), offset, (gint *)frame->stride);
+        meta->id = (gint)z;
+    }
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include <gst/dff/dff-prelude.h>
+#include <gst/video/video.h>
+
+G_BEGIN_DECLS
+
+#define GST_FOCAL_STACK_CAPS_NAME "video/x-focal-stack"
+#define GST_FOCAL_STACK_FORMATS "{ GRAY8, GRAY16_LE, I420, NV12, RGB, BGR, RGBx, BGRx }"
+
+/**
+ * GST_FOCAL_STACK_CAPS_MAKE:
+ *
+ * Template caps of a focal stack; the framerate is stacks per second.
+ */
+#define GST_FOCAL_STACK_CAPS_MAKE                                                                            \
+    GST_FOCAL_STACK_CAPS_NAME ", format = (string) " GST_FOCAL_STACK_FORMATS                                 \
+                              ", width = (int) [ 1, 8192 ], height = (int) [ 1, 8192 ]"                      \
+                              ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"
+
+typedef struct _GstFocalStackInfo GstFocalStackInfo;
+
+/**
+ * GstFocalStackInfo:
+ * @frame: format, size, colorimetry of one plane, and its default layout; its frame rate is stacks per second
+ * @planes: planes a stack, 2 to 64
+ *
+ * The caps of a focal stack, parsed.
+ */
+struct _GstFocalStackInfo {
+    GstVideoInfo frame;
+    guint planes;
+};
+
+GST_DFF_API gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *caps);
+GST_DFF_API GstCaps *gst_focal_stack_info_to_caps(const GstFocalStackInfo *info);
+GST_DFF_API gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info);
+GST_DFF_API gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuffer *buffer,
+                                                       guint plane, gsize offset[GST_VIDEO_MAX_PLANES],
+                                                       gint stride[GST_VIDEO_MAX_PLANES], GError **error);
+GST_DFF_API void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuffer *buffer);
+
+G_END_DECLS

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:gstfocalstackmeta
+ * @short_description: what is known of a focal stack
+ */
+#include "gstfocalstackmeta.h"
+
+#include "gstdffbytes.h"
+#include "gstfocusmeta-private.h"
+
+#define KIND 'S'
+
+GType gst_focal_stack_meta_api_get_type(void)
+{
+    static GType type;
+    static const gchar *tags[] = {NULL};
+
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, gst_meta_api_type_register("GstFocalStackMetaAPI", tags));
+    return type;
+}
+
+static gboolean init(GstMeta *meta, gpointer params, GstBuffer *buffer)
+{
+    GstFocalStackMeta *self = (GstFocalStackMeta *)meta;
+
+    (void)params;
+    (void)buffer;
+    self->sequence = 0;
+    self->planes = 0;
+    self->complete = FALSE;
+    self->missing = 0;
+    self->repeated = 0;
+    self->focus = NULL;
+    return TRUE;
+}
+
+static void release(GstMeta *meta, GstBuffer *buffer)
+{
+    (void)buffer;
+    g_clear_pointer(&((GstFocalStackMeta *)meta)->focus, g_free);
+}
+
+static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buffer, GQuark type,
+                          gpointer data)
+{
+    const GstFocalStackMeta *self = (GstFocalStackMeta *)meta;
+
+    (void)buffer;
+    (void)type;
+    (void)data;
+    if (gst_buffer_get_focal_stack_meta(destination))
+        return TRUE;
+
+    GstFocalStackMeta *copy = gst_buffer_add_focal_stack_meta(destination, self->sequence, self->planes);
+    if (!copy)
+        return FALSE;
+    copy->complete = self->complete;
+    copy->missing = self->missing;
+    copy->repeated = self->repeated;
+    memcpy(copy->focus, self->focus, self->planes * sizeof(GstFocusInfo));
+    return TRUE;
+}
+
+const GstMetaInfo *gst_focal_stack_meta_get_info(void)
+{
+    static const GstMetaInfo *info;
+
+    if (g_once_init_enter((GstMetaInfo **)&info)) {
+        const GstMetaInfo *registered =
+            gst_meta_register(GST_FOCAL_STACK_META_API_TYPE, "GstFocalStackMeta", sizeof(GstFocalStackMeta),
+                              init, release, transform);
+        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)registered);
+    }
+    return info;
+}
+
+/**
+ * gst_buffer_add_focal_stack_meta:
+ * @buffer: a writable #GstBuffer
+ * @sequence: number of the stack
+ * @planes: planes of the stack, 2 to 64
+ *
+ * Adds the meta of a complete stack whose planes' focus is unknown.
+ *
+ * Returns: (transfer none): the meta, which belongs to @buffer
+ */
+GstFocalStackMeta *gst_buffer_add_focal_stack_meta(GstBuffer *buffer, guint64 sequence, guint planes)
+{
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(planes >= 2 && planes <= GST_FOCAL_STACK_MAX_PLANES, NULL);
+
+    GstFocalStackMeta *self =
+        (GstFocalStackMeta *)gst_buffer_add_meta(buffer, GST_FOCAL_STACK_META_INFO, NULL);
+    self->sequence = sequence;
+    self->planes = planes;
+    self->complete = TRUE;
+    self->focus = g_new(GstFocusInfo, planes);
+    for (guint z = 0; z < planes; z++) {
+        gst_focus_info_init(&self->focus[z]);
+        self->focus[z].plane = z;
+        self->focus[z].planes = planes;
+    }
+    return self;
+}
+
+/**
+ * gst_buffer_get_focal_stack_meta:
+ * @buffer: a #GstBuffer
+ *
+ * Returns: (transfer none) (nullable): the meta, or %NULL if @buffer has none
+ */
+GstFocalStackMeta *gst_buffer_get_focal_stack_meta(GstBuffer *buffer)
+{
+    return (GstFocalStackMeta *)gst_buffer_get_meta(buffer, GST_FOCAL_STACK_META_API_TYPE);
+}
+
+/**
+ * gst_focal_stack_meta_set_focus:
+ * @meta: a #GstFocalStackMeta
+ * @plane: which plane, below the stack's number of planes
+ * @info: how it was focused and taken
+ */
+void gst_focal_stack_meta_set_focus(GstFocalStackMeta *meta, guint plane, const GstFocusInfo *info)
+{
+    g_return_if_fail(plane < meta->planes);
+
+    meta->focus[plane] = *info;
+}
+
+/**
+ * gst_focal_stack_meta_get_focus:
+ * @meta: a #GstFocalStackMeta
+ * @plane: which plane
+ * @info: (out caller-allocates): how it was focused and taken
+ *
+ * Returns: %FALSE if the stack has no such plane
+ */
+gboolean gst_focal_stack_meta_get_focus(const GstFocalStackMeta *meta, guint plane, GstFocusInfo *info)
+{
+    if (plane >= meta->planes)
+        return FALSE;
+    *info = meta->focus[plane];
+    return TRUE;
+}
+
+/**
+ * gst_focal_stack_meta_to_bytes:
+ * @meta: a #GstFocalStackMeta
+ *
+ * Returns: (transfer full): the meta as bytes with a version, for files and networks
+ */
+GBytes *gst_focal_stack_meta_to_bytes(const GstFocalStackMeta *meta)
+{
+    GstByteWriter writer;
+
+    gst_dff_bytes_begin(&writer, KIND);
+    gst_byte_writer_put_uint64_be(&writer, meta->sequence);
+    gst_byte_writer_put_uint8(&writer, (guint8)meta->planes);
+    gst_byte_writer_put_uint8(&writer, meta->complete ? 1 : 0);
+    gst_byte_writer_put_uint64_be(&writer, meta->missing);
+    gst_byte_writer_put_uint64_be(&writer, meta->repeated);
+    for (guint z = 0; z < meta->planes; z++)
+        gst_focus_info_write(&meta->focus[z], &writer);
+    return gst_dff_bytes_end(&writer);
+}
+
+static gboolean read_planes(GstFocusInfo *focus, guint planes, GstByteReader *reader)
+{
+    for (guint z = 0; z < planes; z++)
+        if (!gst_focus_info_read(&focus[z], reader))
+            return FALSE;
+    return TRUE;
+}
+
+/**
+ * gst_buffer_add_focal_stack_meta_from_bytes:
+ * @buffer: a writable #GstBuffer
+ * @bytes: what gst_focal_stack_meta_to_bytes() gave
+ * @error: where an error goes
+ *
+ * Returns: (transfer none): the meta, or %NULL with @error set if @bytes are damaged or of an unknown version
+ */
+GstFocalStackMeta *gst_buffer_add_focal_stack_meta_from_bytes(GstBuffer *buffer, GBytes *bytes,
+                                                              GError **error)
+{
+    GstByteReader reader;
+    GstFocusInfo focus[GST_FOCAL_STACK_MAX_PLANES];
+    guint64 sequence = 0, missing = 0, repeated = 0;
+    guint8 planes = 0, complete = 0;
+
+    if (!gst_dff_bytes_open(&reader, bytes, KIND, error))
+        return NULL;
+    const gboolean whole =
+        gst_byte_reader_get_uint64_be(&reader, &sequence) && gst_byte_reader_get_uint8(&reader, &planes) &&
+        gst_byte_reader_get_uint8(&reader, &complete) && gst_byte_reader_get_uint64_be(&reader, &missing) &&
+        gst_byte_reader_get_uint64_be(&reader, &repeated) && planes >= 2 &&
+        planes <= GST_FOCAL_STACK_MAX_PLANES && read_planes(focus, planes, &reader);
+    if (!gst_dff_bytes_close(whole, bytes, error))
+        return NULL;
+
+    GstFocalStackMeta *self = gst_buffer_add_focal_stack_meta(buffer, sequence, planes);
+    self->complete = complete != 0;
+    self->missing = missing;
+    self->repeated = repeated;
+    memcpy(self->focus, focus, planes * sizeof(GstFocusInfo));
+    return self;
+}

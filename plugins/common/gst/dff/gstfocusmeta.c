@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:gstfocusmeta
+ * @short_description: which plane of which sweep a frame is
+ */
+#include "gstdffbytes.h"
+#include "gstfocusmeta-private.h"
+
+#include <math.h>
+
+#define KIND 'F'
+
+GType gst_focus_meta_api_get_type(void)
+{
+    static GType type;
+    static const gchar *tags[] = {NULL};
+
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, gst_meta_api_type_register("GstFocusMetaAPI", tags));
+    return type;
+}
+
+static void set_focus(GstFocusMeta *self, const GstFocusInfo *info)
+{
+    self->sweep = info->sweep;
+    self->plane = info->plane;
+    self->planes = info->planes;
+    self->power = info->power;
+    self->position_um = info->position_um;
+    self->code = info->code;
+    self->exposure = info->exposure;
+    self->frame_id = info->frame_id;
+}
+
+static gboolean init(GstMeta *meta, gpointer params, GstBuffer *buffer)
+{
+    GstFocusInfo unknown;
+
+    (void)params;
+    (void)buffer;
+    gst_focus_info_init(&unknown);
+    set_focus((GstFocusMeta *)meta, &unknown);
+    return TRUE;
+}
+
+static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buffer, GQuark type,
+                          gpointer data)
+{
+    GstFocusInfo info;
+
+    (void)buffer;
+    (void)type;
+    (void)data;
+    if (gst_buffer_get_focus_meta(destination))
+        return TRUE;
+    gst_focus_meta_get_focus((GstFocusMeta *)meta, &info);
+    return gst_buffer_add_focus_meta(destination, &info) != NULL;
+}
+
+const GstMetaInfo *gst_focus_meta_get_info(void)
+{
+    static const GstMetaInfo *info;
+
+    if (g_once_init_enter((GstMetaInfo **)&info)) {
+        const GstMetaInfo *registered = gst_meta_register(GST_FOCUS_META_API_TYPE, "GstFocusMeta",
+                                                          sizeof(GstFocusMeta), init, NULL, transform);
+        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)registered);
+    }
+    return info;
+}
+
+/**
+ * gst_focus_info_init:
+ * @info: (out caller-allocates): a #GstFocusInfo
+ *
+ * Sets every field to "unknown".
+ */
+void gst_focus_info_init(GstFocusInfo *info)
+{
+    *info = (GstFocusInfo){.power = NAN, .position_um = NAN, .code = -1, .exposure = GST_CLOCK_TIME_NONE};
+}
+
+/**
+ * gst_buffer_add_focus_meta:
+ * @buffer: a writable #GstBuffer
+ * @info: how the plane was focused and taken
+ *
+ * Returns: (transfer none): the meta, which belongs to @buffer
+ */
+GstFocusMeta *gst_buffer_add_focus_meta(GstBuffer *buffer, const GstFocusInfo *info)
+{
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(info, NULL);
+
+    GstFocusMeta *self = (GstFocusMeta *)gst_buffer_add_meta(buffer, GST_FOCUS_META_INFO, NULL);
+    set_focus(self, info);
+    return self;
+}
+
+/**
+ * gst_buffer_get_focus_meta:
+ * @buffer: a #GstBuffer
+ *
+ * Returns: (transfer none) (nullable): the meta, or %NULL if @buffer has none
+ */
+GstFocusMeta *gst_buffer_get_focus_meta(GstBuffer *buffer)
+{
+    return (GstFocusMeta *)gst_buffer_get_meta(buffer, GST_FOCUS_META_API_TYPE);
+}
+
+/**
+ * gst_focus_meta_get_focus:
+ * @meta: a #GstFocusMeta
+ * @info: (out caller-allocates): where the facts go
+ */
+void gst_focus_meta_get_focus(const GstFocusMeta *meta, GstFocusInfo *info)
+{
+    *info = (GstFocusInfo){
+        .sweep = meta->sweep,
+        .plane = meta->plane,
+        .planes = meta->planes,
+        .power = meta->power,
+        .position_um = meta->position_um,
+        .code = meta->code,
+        .exposure = meta->exposure,
+        .frame_id = meta->frame_id,
+    };
+}
+
+void gst_focus_info_write(const GstFocusInfo *info, GstByteWriter *writer)
+{
+    gst_byte_writer_put_uint64_be(writer, info->sweep);
+    gst_byte_writer_put_uint32_be(writer, info->plane);
+    gst_byte_writer_put_uint32_be(writer, info->planes);
+    gst_byte_writer_put_float64_be(writer, info->power);
+    gst_byte_writer_put_float64_be(writer, info->position_um);
+    gst_byte_writer_put_int32_be(writer, info->code);
+    gst_byte_writer_put_uint64_be(writer, info->exposure);
+    gst_byte_writer_put_uint64_be(writer, info->frame_id);
+}
+
+gboolean gst_focus_info_read(GstFocusInfo *info, GstByteReader *reader)
+{
+    return gst_byte_reader_get_uint64_be(reader, &info->sweep) &&
+           gst_byte_reader_get_uint32_be(reader, &info->plane) &&
+           gst_byte_reader_get_uint32_be(reader, &info->planes) &&
+           gst_byte_reader_get_float64_be(reader, &info->power) &&
+           gst_byte_reader_get_float64_be(reader, &info->position_um) &&
+           gst_byte_reader_get_int32_be(reader, &info->code) &&
+           gst_byte_reader_get_uint64_be(reader, &info->exposure) &&
+           gst_byte_reader_get_uint64_be(reader, &info->frame_id);
+}
+
+/**
+ * gst_focus_meta_to_bytes:
+ * @meta: a #GstFocusMeta
+ *
+ * Returns: (transfer full): the meta as bytes with a version, for files and networks
+ */
+GBytes *gst_focus_meta_to_bytes(const GstFocusMeta *meta)
+{
+    GstByteWriter writer;
+    GstFocusInfo info;
+
+    gst_focus_meta_get_focus(meta, &info);
+    gst_dff_bytes_begin(&writer, KIND);
+    gst_focus_info_write(&info, &writer);
+    return gst_dff_bytes_end(&writer);
+}
+
+/**
+ * gst_buffer_add_focus_meta_from_bytes:
+ * @buffer: a writable #GstBuffer
+ * @bytes: what gst_focus_meta_to_bytes() gave
+ * @error: where an error goes
+ *
+ * Returns: (transfer none): the meta, or %NULL with @error set if @bytes are damaged or of an unknown version
+ */
+GstFocusMeta *gst_buffer_add_focus_meta_from_bytes(GstBuffer *buffer, GBytes *bytes, GError **error)
+{
+    GstByteReader reader;
+    GstFocusInfo info;
+
+    if (!gst_dff_bytes_open(&reader, bytes, KIND, error))
+        return NULL;
+    if (!gst_dff_bytes_close(gst_focus_info_read(&info, &reader), bytes, error))
+        return NULL;
+    return gst_buffer_add_focus_meta(buffer, &info);
+}
