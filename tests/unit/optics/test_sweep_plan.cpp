@@ -36,7 +36,7 @@ TEST(SweepPlan, positions_outside_are_clamped)
 TEST(SweepPlan, impossible_sweeps_are_refused)
 {
     const std::array rising{1.0, 2.0};
-    const std::array endless{1.0, -INFINITY};
+    const std::array endless{1.0, static_cast<double>(-INFINITY)};
     EXPECT_THROW(SweepPlan::even(1, 1.0, 0.0), std::invalid_argument);
     EXPECT_THROW(SweepPlan::even(65, 1.0, 0.0), std::invalid_argument);
     EXPECT_THROW(SweepPlan::even(6, 0.0, 1.0), std::invalid_argument);
