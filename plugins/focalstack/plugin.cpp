@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "config.h"
+
+#include <gst/gst.h>
+
+static gboolean plugin_init(GstPlugin *plugin)
+{
+    gboolean registered = TRUE;
+    (void)plugin;
+    return registered;
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, focalstack,
+                  "Groups, splits and aligns the planes of focal stacks", plugin_init, VERSION, GST_LICENSE,
+                  PACKAGE, GST_PACKAGE_ORIGIN)
