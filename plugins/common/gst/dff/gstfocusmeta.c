@@ -182,6 +182,7 @@ GstFocusMeta *gst_buffer_add_focus_meta_from_bytes(GstBuffer *buffer, GBytes *by
     GstByteReader reader;
     GstFocusInfo info;
 
+    gst_focus_info_init(&info);
     if (!gst_dff_bytes_open(&reader, bytes, KIND, error))
         return NULL;
     if (!gst_dff_bytes_close(gst_focus_info_read(&info, &reader), bytes, error))

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+#
+# What demo.sh and tests/run.sh share: the packages, and how to build. Sourced by bash, not run.
+
+run_packages=(
+    gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
+    gstreamer1.0-plugins-ugly pocl-opencl-icd)
+build_packages=(
+    build-essential pkg-config meson ninja-build
+    libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gobject-introspection libgirepository1.0-dev
+    ocl-icd-opencl-dev opencl-clhpp-headers opencl-c-headers
+    libopencv-dev)
+test_packages=(
+    libgtest-dev libasan8 libubsan1 clang-format clang-tidy
+    python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv)
+
+# say TEXT: one line about what happens now, with the minutes and seconds since the start.
+say() {
+    printf '== %02d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"
+}
+
+# install_missing PACKAGE...: installs those that are not there. Touches nothing, and needs no root, when all are.
+install_missing() {
+    if ! command -v dpkg-query >/dev/null; then
+        say "No dpkg here: taking for granted that these, or what they are called here, are installed: $*"
+        return 0
+    fi
+    local missing
+    missing=$(comm -23 <(printf '%s\n' "$@" | sort -u) \
+        <(dpkg-query -W -f='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null | sed -n 's/ installed$//p' | sort -u))
+    [ -n "$missing" ] || return 0
+    missing=${missing//$'\n'/ }
+    if [ "$(id -u)" != 0 ]; then
+        say "Some packages are missing, and only root can install them. Run this, then start again:"
+        echo "    sudo apt-get update && sudo apt-get install -y $missing"
+        return 1
+    fi
+    say "Installing $missing"
+    export DEBIAN_FRONTEND=noninteractive
+    # shellcheck disable=SC2086  # one word a package
+    { apt-get update -q && apt-get install -q -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing; } 2>&1 |
+        awk '/^(E|W|Err):/ { print } /^Setting up/ && ++n % 50 == 0 { print "   " n " packages set up"; fflush() }'
+}
+
+# build FOLDER OPTION...: configures the folder, once, with these Meson options, and compiles.
+build() {
+    local folder=$1
+    shift
+    mkdir -p "$folder"
+    if [ ! -f "$folder/build.ninja" ]; then
+        meson setup "$folder" "$@" >"$folder/setup.log" 2>&1 || { cat "$folder/setup.log"; return 1; }
+    fi
+    NINJA_STATUS='   [%f/%t] ' ninja -C "$folder" >"$folder/compile.log" 2>&1 || { tail -n 60 "$folder/compile.log"; return 1; }
+}

@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+#
+# Builds everything twice, plainly and with the address and undefined-behaviour sanitizers, and runs every test there is.
+# Installs what is missing if it is root. Logs stand in the two build folders. The last line counts the tests.
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 1
+. pipelines/setup.sh
+
+passed=0 failed=0 skipped=0
+
+finish() {
+    if [ "$skipped" -gt 0 ]; then
+        echo "$passed passed, $failed failed, $skipped skipped"
+    else
+        echo "$passed passed, $failed failed"
+    fi
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+    exit
+}
+
+# check NAME COMMAND...: one test; its output is shown when it fails.
+check() {
+    local name=$1 log
+    shift
+    log=$(mktemp)
+    if "$@" >"$log" 2>&1; then
+        passed=$((passed + 1))
+        say "ok      $name"
+    else
+        failed=$((failed + 1))
+        say "FAILED  $name"
+        tail -n 60 "$log"
+    fi
+    rm -f "$log"
+}
+
+# add_count TEXT: adds up every 'N passed, N failed[, N skipped]' that stands alone on a line.
+add_count() {
+    local count
+    count=$(sed -nE 's/^([0-9]+) passed, ([0-9]+) failed(, ([0-9]+) skipped)?$/\1 \2 \4/p' <<<"$1" | tail -n 1)
+    [ -n "$count" ] || return 1
+    local p f s
+    read -r p f s <<<"$count"
+    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + ${s:-0}))
+}
+
+# meson_tests FOLDER: each Meson test counts once.
+meson_tests() {
+    local log="$1/tests.log" bad
+    meson test -C "$1" --no-rebuild --print-errorlogs --num-processes 2 2>&1 | tee "$log" | grep -E '^ *[0-9]+/[0-9]+ '
+    number() { sed -nE "s/^($1): +([0-9]+) *$/\2/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
+    bad=$(number 'Fail|Timeout|Unexpected Pass')
+    grep -q '^Ok:' "$log" || bad=1
+    passed=$((passed + $(number 'Ok|Expected Fail')))
+    failed=$((failed + bad))
+    skipped=$((skipped + $(number Skipped)))
+    [ "$bad" -eq 0 ] || grep -vE '^ *[0-9]+/[0-9]+ .* OK ' "$log" | tail -n 300
+}
+
+# tidy: clang-tidy's complaints, without the hundred notes around each.
+tidy() {
+    run-clang-tidy -p build-release -quiet -j 2 "$PWD/plugins/" 2>/dev/null | sed 's/\x1b\[[0-9;]*m//g' >build-release/tidy.log
+    local status=$?
+    grep -E ': (error|warning):' build-release/tidy.log
+    return $status
+}
+
+say "Building in build-release"
+check "release build, without a warning" build build-release --buildtype=release -Dwerror=true -Dauto_features=enabled
+say "Testing the release build"
+meson_tests build-release
+
+say "Building in build-sanitize, with the address and undefined-behaviour sanitizers"
+check "sanitizer build, without a warning" build build-sanitize --buildtype=debugoptimized -Dwerror=true \
+    -Dauto_features=enabled -Dintrospection=disabled -Db_sanitize=address,undefined -Db_lundef=false
+say "Testing the sanitizer build"
+meson_tests build-sanitize
+
+say "Checking the format of the code"
+check "clang-format" bash -c "git ls-files 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
+    xargs clang-format --dry-run -Werror"
+
+say "Checking the code with clang-tidy"
+check "clang-tidy" tidy
+
+if [ -f fpga/test/run.sh ]; then
+    say "Testing the FPGA design"
+    fpga_output=$(bash fpga/test/run.sh 2>&1 | tee /dev/stderr)
+    add_count "$fpga_output" || failed=$((failed + 1))
+fi
+
+finish
