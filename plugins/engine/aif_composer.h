@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/focus_engine.h"
+
+namespace dff {
+
+/* All-in-focus pictures from stacks of one shape and their depth maps. Not to be used from two threads at
+ * once. */
+class AifComposer {
+public:
+    enum class Blend {
+        Linear, /* between the two planes around the depth */
+        Soft,   /* Gaussian over the neighbouring planes: less noise */
+    };
+
+    /* Throws EngineError. */
+    AifComposer(std::shared_ptr<Device> device, const StackShape &shape);
+
+    /* What the pixels of the depth maps mean from now on; DepthEncoder::index() until then. */
+    void set_encoder(const DepthEncoder &encoder);
+
+    /* A 16-bit depth map of the stack's size; its stride in bytes must be even. */
+    struct DepthView {
+        std::span<const std::byte> memory;
+        size_t stride;
+    };
+
+    /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. Pixels without
+     * a depth become the mean of all planes. Throws EngineError. */
+    void compose(const StackView &stack, const DepthView &depth, Blend blend, std::span<std::byte> picture,
+                 std::span<const RowLayout> layout);
+
+    /* Of the last picture. */
+    const StageTimes &times() const { return times_; }
+
+private:
+    std::shared_ptr<Device> device_;
+    StackShape shape_;
+    CommandQueue queue_;
+    StackBuffer stack_;
+    cl::Kernel compose_;
+    cl::Buffer positions_;
+    StageTimes times_;
+};
+
+} // namespace dff

@@ -1,0 +1,21 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Writes OpenCL sources as C++ string literals: embed_kernels.py OUTPUT KERNEL.cl..."""
+import pathlib
+import sys
+
+output, *kernels = map(pathlib.Path, sys.argv[1:])
+entries = "".join(f'    {{"{k.stem}", R"opencl({k.read_text()})opencl"}},\n' for k in kernels)
+output.write_text(f"""#include "engine/opencl/kernel_sources.h"
+
+namespace dff {{
+
+const std::map<std::string_view, std::string_view> &kernel_sources()
+{{
+    static const std::map<std::string_view, std::string_view> sources = {{
+{entries}    }};
+    return sources;
+}}
+
+}} // namespace dff
+""")

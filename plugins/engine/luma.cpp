@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/luma.h"
+
+namespace dff {
+
+bool is_interleaved(PixelFormat format)
+{
+    return format == PixelFormat::Rgb || format == PixelFormat::Bgr || format == PixelFormat::Rgbx ||
+           format == PixelFormat::Bgrx;
+}
+
+cl_int4 colour_channels(PixelFormat format)
+{
+    const bool blue_first = format == PixelFormat::Bgr || format == PixelFormat::Bgrx;
+    const int bytes = format == PixelFormat::Rgbx || format == PixelFormat::Bgrx ? 4 : 3;
+    return {{bytes, blue_first ? 2 : 0, 1, blue_first ? 0 : 2}};
+}
+
+std::string Luma::build_options(PixelFormat format)
+{
+    return format == PixelFormat::Gray16 ? "-DLUMA_BYTES=2" : "-DLUMA_BYTES=1";
+}
+
+Luma::Luma(CommandQueue &queue, const StackShape &shape) : queue_(queue), shape_(shape)
+{
+    if (!is_interleaved(shape.format))
+        return;
+    kernel_ = Program(queue.device(), "luma").kernel("luma_of_colours");
+    bytes_ = queue.allocate(size_t{shape.width} * shape.height * shape.planes);
+    rows_ = queue.allocate(shape.planes * sizeof(RowLayout));
+
+    const std::vector<RowLayout> rows =
+        packed_layout({PixelFormat::Gray8, shape.width, shape.height, shape.planes});
+    queue.commands().enqueueWriteBuffer(rows_, CL_TRUE, 0, rows.size() * sizeof(RowLayout), rows.data());
+}
+
+void Luma::run(const StackBuffer &stack)
+{
+    queue_.begin_stage("luma");
+    if (!is_interleaved(shape_.format)) {
+        bytes_ = stack.bytes();
+        rows_ = stack.layout();
+        return;
+    }
+    queue_.run(kernel_, {shape_.width, shape_.height, shape_.planes}, stack.bytes(), stack.layout(), bytes_,
+               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height),
+               colour_channels(shape_.format));
+}
+
+} // namespace dff

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/opencl/device.h"
+
+#include "engine/engine_error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <mutex>
+#include <vector>
+
+namespace dff {
+
+namespace {
+
+std::string lower(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+std::vector<cl::Device> all_devices()
+{
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error &) {
+        /* CL_PLATFORM_NOT_FOUND_KHR: there is none, which the caller reports. */
+    }
+
+    std::vector<cl::Device> devices;
+    for (const cl::Platform &platform : platforms) {
+        std::vector<cl::Device> found;
+        try {
+            platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+        } catch (const cl::Error &) {
+            continue; /* CL_DEVICE_NOT_FOUND: a driver without its hardware */
+        }
+        devices.insert(devices.end(), found.begin(), found.end());
+    }
+    return devices;
+}
+
+cl::Device choose(const std::vector<cl::Device> &devices, const std::string &wish)
+{
+    const auto is_wished = [&](const cl::Device &device) {
+        if (wish.empty())
+            return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+        return lower(device.getInfo<CL_DEVICE_NAME>()).find(lower(wish)) != std::string::npos;
+    };
+    const auto found = std::find_if(devices.begin(), devices.end(), is_wished);
+    if (found != devices.end())
+        return *found;
+    if (wish.empty())
+        return devices.front();
+
+    std::string names;
+    for (const cl::Device &device : devices)
+        names += (names.empty() ? "" : ", ") + device.getInfo<CL_DEVICE_NAME>();
+    throw EngineError(EngineError::Kind::NoDevice,
+                      "No OpenCL device's name contains \"" + wish + "\". There are: " + names);
+}
+
+} // namespace
+
+Device::Device(cl::Device device)
+    : device_(std::move(device)), context_(device_),
+      is_cpu_((device_.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0),
+      global_memory_(device_.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()),
+      largest_allocation_(device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
+{
+}
+
+std::string Device::name() const
+{
+    return device_.getInfo<CL_DEVICE_NAME>();
+}
+
+std::shared_ptr<Device> Device::open(const std::string &wish)
+{
+    static std::mutex mutex; /* guards the list of open devices; nothing else is locked under it */
+    static std::map<cl_device_id, std::weak_ptr<Device>> open_devices;
+
+    const std::vector<cl::Device> devices = all_devices();
+    if (devices.empty())
+        throw EngineError(
+            EngineError::Kind::NoDevice,
+            "There is no OpenCL device. Install a driver: pocl-opencl-icd computes on the CPU, GPU makers "
+            "have their own; clinfo lists what is found");
+
+    const cl::Device chosen = choose(devices, wish);
+    const std::lock_guard lock(mutex);
+    std::weak_ptr<Device> &known = open_devices[chosen.get()];
+    std::shared_ptr<Device> device = known.lock();
+    if (!device) {
+        try {
+            device = std::make_shared<Device>(chosen);
+        } catch (const cl::Error &error) {
+            throw EngineError(EngineError::Kind::NoDevice,
+                              "The OpenCL device " + chosen.getInfo<CL_DEVICE_NAME>() +
+                                  " cannot be opened (error " + std::to_string(error.err()) + ")");
+        }
+        known = device;
+    }
+    return device;
+}
+
+void translate_errors(const Device &device, const std::function<void()> &work)
+{
+    try {
+        work();
+    } catch (const cl::Error &error) {
+        switch (error.err()) {
+        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+        case CL_OUT_OF_RESOURCES:
+        case CL_OUT_OF_HOST_MEMORY:
+        case CL_INVALID_BUFFER_SIZE:
+            throw EngineError(EngineError::Kind::OutOfMemory,
+                              "The OpenCL device " + device.name() +
+                                  " ran out of memory: use smaller pictures, fewer planes or another device");
+        default:
+            throw EngineError(EngineError::Kind::Failed, "The OpenCL device " + device.name() +
+                                                             " failed in " + error.what() + " (error " +
+                                                             std::to_string(error.err()) + ")");
+        }
+    }
+}
+
+} // namespace dff

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/opencl/opencl.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace dff {
+
+/* An OpenCL device with its context, shared by all engines that use it. */
+class Device {
+public:
+    /* Opens the device whose name contains `wish`, ignoring case; with an empty wish the first GPU, else the
+     * first device. Engines in one process that ask for the same device share it. Throws EngineError
+     * (NoDevice) with the list of devices if there is none. */
+    static std::shared_ptr<Device> open(const std::string &wish);
+
+    explicit Device(cl::Device device);
+
+    const cl::Device &device() const { return device_; }
+    const cl::Context &context() const { return context_; }
+    std::string name() const;
+
+    /* The device works in the host's memory, so that stacks can be used in place. */
+    bool is_cpu() const { return is_cpu_; }
+
+    size_t global_memory() const { return global_memory_; }
+    size_t largest_allocation() const { return largest_allocation_; }
+
+private:
+    cl::Device device_;
+    cl::Context context_;
+    bool is_cpu_;
+    size_t global_memory_;
+    size_t largest_allocation_;
+};
+
+/* Runs `work` and turns what the OpenCL driver throws into EngineError. */
+void translate_errors(const Device &device, const std::function<void()> &work);
+
+} // namespace dff

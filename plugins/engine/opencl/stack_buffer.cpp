@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/opencl/stack_buffer.h"
+
+namespace dff {
+
+StackBuffer::StackBuffer(CommandQueue &queue, StackShape shape)
+    : queue_(queue), shape_(shape),
+      layout_(queue.allocate(shape.components().size() * shape.planes * sizeof(RowLayout)))
+{
+}
+
+void StackBuffer::assign(const StackView &view)
+{
+    const cl_mem_flags placement = queue_.device().is_cpu() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    /* OpenCL has no buffers of const host memory; CL_MEM_READ_ONLY keeps the promise. */
+    auto *memory = const_cast<std::byte *>(view.memory.data());
+
+    bytes_ = cl::Buffer(queue_.device().context(), CL_MEM_READ_ONLY | placement, view.memory.size(), memory);
+    if (view.layout != host_layout_) {
+        host_layout_ = view.layout;
+        queue_.commands().enqueueWriteBuffer(layout_, CL_TRUE, 0, host_layout_.size() * sizeof(RowLayout),
+                                             host_layout_.data());
+    }
+}
+
+} // namespace dff

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/opencl/command_queue.h"
+#include "engine/stack_shape.h"
+
+namespace dff {
+
+/* A focal stack as the kernels see it: its bytes, and where each component of each plane starts. On a CPU the
+ * bytes are used in place, so the view's memory must stay valid until the queue is finished. */
+class StackBuffer {
+public:
+    StackBuffer(CommandQueue &queue, StackShape shape);
+
+    /* Points the buffer at the stack in `view`, whose shape must be this one's. */
+    void assign(const StackView &view);
+
+    const StackShape &shape() const { return shape_; }
+    const cl::Buffer &bytes() const { return bytes_; }
+
+    /* ulong2 (offset, stride) in bytes for each component and plane: [component][z]. */
+    const cl::Buffer &layout() const { return layout_; }
+
+private:
+    CommandQueue &queue_;
+    StackShape shape_;
+    std::vector<RowLayout> host_layout_;
+    cl::Buffer bytes_;
+    cl::Buffer layout_;
+};
+
+} // namespace dff

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/stack_shape.h"
+
+namespace dff {
+
+std::vector<Component> StackShape::components() const
+{
+    const uint32_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+    switch (format) {
+    case PixelFormat::Gray8:
+        return {{width, height, 1, 1, 1}};
+    case PixelFormat::Gray16:
+        return {{width, height, 1, 1, 2}};
+    case PixelFormat::I420:
+        return {
+            {width, height, 1, 1, 1}, {half_width, half_height, 1, 2, 1}, {half_width, half_height, 1, 2, 1}};
+    case PixelFormat::Nv12:
+        return {{width, height, 1, 1, 1}, {2 * half_width, half_height, 2, 2, 1}};
+    case PixelFormat::Rgb:
+    case PixelFormat::Bgr:
+        return {{3 * width, height, 3, 1, 1}};
+    case PixelFormat::Rgbx:
+    case PixelFormat::Bgrx:
+        return {{4 * width, height, 4, 1, 1}};
+    }
+    return {};
+}
+
+std::vector<RowLayout> packed_layout(const StackShape &shape)
+{
+    const std::vector<Component> components = shape.components();
+    std::vector<RowLayout> layout(components.size() * shape.planes);
+    uint64_t offset = 0;
+    for (uint32_t z = 0; z < shape.planes; z++)
+        for (size_t c = 0; c < components.size(); c++) {
+            const uint64_t stride = uint64_t{components[c].width} * components[c].sample_bytes;
+            layout[c * shape.planes + z] = {offset, stride};
+            offset += stride * components[c].height;
+        }
+    return layout;
+}
+
+} // namespace dff

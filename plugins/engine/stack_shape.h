@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace dff {
+
+enum class PixelFormat { Gray8, Gray16, I420, Nv12, Rgb, Bgr, Rgbx, Bgrx };
+
+/* One component plane of a picture (luma, chroma, or interleaved colours), as rows of samples. */
+struct Component {
+    uint32_t width;        /* samples a row, interleaved channels counted one by one */
+    uint32_t height;       /* rows */
+    uint32_t channels;     /* interleaved channels */
+    uint32_t subsampling;  /* picture pixels a sample in each direction: 1 or 2 */
+    uint32_t sample_bytes; /* 1 or 2 (little endian) */
+};
+
+struct StackShape {
+    PixelFormat format;
+    uint32_t width;
+    uint32_t height;
+    uint32_t planes;
+
+    std::vector<Component> components() const;
+
+    bool operator==(const StackShape &) const = default;
+};
+
+/* Where a component's rows lie in the stack's memory, in bytes. Laid out as the kernels' ulong2. */
+struct RowLayout {
+    uint64_t offset;
+    uint64_t stride;
+
+    bool operator==(const RowLayout &) const = default;
+};
+
+/* A stack in host memory: `layout[component * planes + z]` says where each component of each plane lies. */
+struct StackView {
+    StackShape shape;
+    std::span<const std::byte> memory;
+    std::vector<RowLayout> layout;
+};
+
+/* Layout of planes that follow each other in one memory without any padding. For tests and plain
+ * applications. */
+std::vector<RowLayout> packed_layout(const StackShape &shape);
+
+} // namespace dff

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/aif_composer.h"
+#include "test_stack.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace dff;
+
+namespace {
+
+/* Depth pixels of unit=index that run through all positions, with holes. */
+std::vector<uint16_t> test_depth(const StackShape &shape)
+{
+    const DepthEncoder encoder = DepthEncoder::index(shape.planes);
+    std::vector<uint16_t> depth;
+    for (unsigned i = 0; i < shape.width * shape.height; i++)
+        depth.push_back(i % 7 == 0 ? 0 : encoder.encode((shape.planes - 1) * (i % 101) / 100.0));
+    return depth;
+}
+
+/* The twin of aif.cl's position_of. */
+double position_of(const std::vector<uint16_t> &depth, const StackShape &shape, const Component &c,
+                   unsigned x, unsigned y)
+{
+    const DepthEncoder encoder = DepthEncoder::index(shape.planes);
+    double sum = 0.0;
+    unsigned known = 0;
+    for (unsigned j = y * c.subsampling; j < std::min((y + 1) * c.subsampling, shape.height); j++)
+        for (unsigned i = x * c.subsampling; i < std::min((x + 1) * c.subsampling, shape.width); i++)
+            if (const auto u = encoder.decode(depth[j * shape.width + i])) {
+                sum += *u;
+                known++;
+            }
+    return known ? sum / known : -1.0;
+}
+
+double twin_sample(const std::vector<double> &planes, double u, AifComposer::Blend blend)
+{
+    const auto count = static_cast<int>(planes.size());
+    double sum = 0.0, weights = 0.0;
+    for (int z = 0; z < count; z++) {
+        double weight = 1.0;
+        if (u >= 0.0 && blend == AifComposer::Blend::Linear)
+            weight = std::max(1.0 - std::abs(z - u), 0.0);
+        else if (u >= 0.0)
+            weight = z >= static_cast<int>(u) - 2 && z <= static_cast<int>(u) + 3
+                         ? std::exp(-(z - u) * (z - u) / (2.0 * 0.36))
+                         : 0.0;
+        sum += weight * planes[z];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+} // namespace
+
+class AifFormats : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend>> {};
+
+TEST_P(AifFormats, agrees_with_its_twin)
+{
+    const auto [format, blend] = GetParam();
+    const TestStack stack({format, 67, 65, 7});
+    const std::vector<uint16_t> depth = test_depth(stack.shape);
+    const std::vector<RowLayout> layout = packed_layout({format, 67, 65, 1});
+    std::vector<std::byte> picture(stack.memory.size() / 7);
+    AifComposer composer(Device::open(""), stack.shape);
+    composer.compose(stack.view(), {std::as_bytes(std::span(depth)), 67 * 2}, blend, picture, layout);
+
+    const std::vector<Component> components = stack.shape.components();
+    for (size_t c = 0; c < components.size(); c++)
+        for (unsigned y = 0; y < components[c].height; y++)
+            for (unsigned x = 0; x < components[c].width; x++) {
+                const double u =
+                    position_of(depth, stack.shape, components[c], x / components[c].channels, y);
+                const auto value = [&](unsigned z) -> double {
+                    if (format == PixelFormat::Gray16)
+                        return stack.sample(c, 2 * x, y, z) + 256.0 * stack.sample(c, 2 * x + 1, y, z);
+                    return stack.sample(c, x, y, z);
+                };
+                std::vector<double> planes;
+                for (unsigned z = 0; z < 7; z++)
+                    planes.push_back(value(z));
+                const std::byte *sample =
+                    picture.data() + layout[c].offset + layout[c].stride * y + x * components[c].sample_bytes;
+                double found = static_cast<double>(sample[0]);
+                if (format == PixelFormat::Gray16)
+                    found += 256.0 * static_cast<double>(sample[1]);
+                const double tolerance = format == PixelFormat::Gray16 ? 8.0 : 0.55;
+                ASSERT_NEAR(found, twin_sample(planes, u, blend), tolerance)
+                    << x << "," << y << " component " << c;
+            }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Aif, AifFormats,
+    testing::Combine(testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
+                                     PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr, PixelFormat::Rgbx,
+                                     PixelFormat::Bgrx),
+                     testing::Values(AifComposer::Blend::Linear, AifComposer::Blend::Soft)));

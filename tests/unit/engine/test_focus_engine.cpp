@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/focus_engine.h"
+#include "twin_bilateral_grid.h"
+#include "twin_focus.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+using namespace dff;
+
+namespace {
+
+struct Maps {
+    explicit Maps(const StackShape &shape)
+        : depth(shape.width * shape.height), sparse(depth.size()), confidence(depth.size()),
+          motion(depth.size()), outputs{picture(depth, shape), picture(sparse, shape),
+                                        picture(confidence, shape), picture(motion, shape)}
+    {
+    }
+
+    template <typename T> static OutputPicture picture(std::vector<T> &values, const StackShape &shape)
+    {
+        return {std::as_writable_bytes(std::span(values)).data(), shape.width * sizeof(T)};
+    }
+
+    std::vector<uint16_t> depth, sparse;
+    std::vector<uint8_t> confidence, motion;
+    DepthOutputs outputs;
+};
+
+} // namespace
+
+/* The whole method against the twins one after the other. */
+TEST(FocusEngine, agrees_with_the_twins)
+{
+    const TestStack stack({PixelFormat::Bgr, 161, 131, 10});
+    FocusEngine engine(Device::open(""), stack.shape, {});
+    Maps maps(stack.shape);
+    ASSERT_TRUE(engine.compute(stack.view(), maps.outputs));
+
+    const Volume luma = twin::luma(stack);
+    const auto moved = twin::z_entropy(luma, 2.0f);
+    const auto sparse = twin::sparse_depth(twin::focus_product(luma, 3), &moved, 1.4f);
+    const Volume filled = twin::bilateral_solve(sparse, twin::mean_luma(luma), {}, {}, 161, 131, {});
+    const Volume u = twin::gaussian_blur(filled, GaussianBlur::taps_for(16));
+    const DepthEncoder encoder = DepthEncoder::index(10);
+
+    size_t far_off = 0, other_sparse = 0;
+    for (size_t i = 0; i < maps.depth.size(); i++) {
+        const double error = encoder.decode(maps.depth[i]).value() - u.values[i];
+        far_off += std::abs(error) > 9.0 / 255.0;
+        const uint16_t expected = sparse[i] == 255 ? 0 : encoder.encode(sparse[i]);
+        other_sparse += maps.sparse[i] != expected;
+        ASSERT_EQ(maps.motion[i], moved[i]);
+    }
+    EXPECT_LE(far_off, maps.depth.size() / 100) << "within 1/255 of the range on 99 % of the pixels";
+    EXPECT_LE(other_sparse, maps.depth.size() / 1000);
+}
+
+TEST(FocusEngine, a_stack_without_texture_has_no_depth)
+{
+    TestStack stack({PixelFormat::I420, 64, 64, 4});
+    std::fill(stack.memory.begin(), stack.memory.end(), std::byte{90});
+    FocusEngine engine(Device::open(""), stack.shape, {});
+    Maps maps(stack.shape);
+    EXPECT_FALSE(engine.compute(stack.view(), maps.outputs));
+    EXPECT_EQ(std::count(maps.depth.begin(), maps.depth.end(), 0), 64 * 64);
+    EXPECT_EQ(std::count(maps.confidence.begin(), maps.confidence.end(), 0), 64 * 64);
+}
+
+TEST(FocusEngine, the_encoder_gives_the_unit)
+{
+    const TestStack stack({PixelFormat::Gray8, 96, 80, 6});
+    FocusEngine engine(Device::open(""), stack.shape, {});
+    Maps index(stack.shape), millimetre(stack.shape);
+    engine.compute(stack.view(), index.outputs);
+    const DepthEncoder encoder = DepthEncoder::millimetre(SweepPlan::even(6, 5.0, 1.0));
+    engine.set_encoder(encoder);
+    engine.compute(stack.view(), millimetre.outputs);
+    for (size_t i = 0; i < index.depth.size(); i++)
+        ASSERT_EQ(millimetre.depth[i], encoder.encode(DepthEncoder::index(6).decode(index.depth[i]).value()));
+}
+
+TEST(FocusEngine, every_stage_has_a_time)
+{
+    const TestStack stack({PixelFormat::Gray8, 64, 64, 3});
+    FocusEngine engine(Device::open(""), stack.shape, {});
+    Maps maps(stack.shape);
+    engine.compute(stack.view(), maps.outputs);
+    for (const char *stage : {"luma", "focus-measure", "z-entropy", "sparse-depth", "reference", "splat",
+                              "solve", "slice", "blur", "code", "confidence"})
+        EXPECT_EQ(std::count_if(engine.times().begin(), engine.times().end(),
+                                [&](const auto &time) { return time.first == stage; }),
+                  1)
+            << stage;
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/aif_composer.h"
+#include "engine/engine_error.h"
+#include "test_stack.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+using namespace dff;
+
+namespace {
+
+/* Depth and AIF of a stack whose left half is sharp in the nearest plane and the right half in the farthest.
+ */
+void expect_two_halves(const StackShape &shape)
+{
+    TestStack stack(shape);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 0; y < shape.height; y++)
+            for (unsigned x = 0; x < shape.width; x++) {
+                const bool sharp = x < shape.width / 2 ? z == 0 : z == shape.planes - 1;
+                const RowLayout &rows = stack.layout[z];
+                stack.memory[rows.offset + rows.stride * y + x] =
+                    std::byte(sharp ? (x / 3 + y / 3) % 2 * 200 + 20 : 120);
+            }
+    FocusEngine engine(Device::open(""), shape, {});
+    std::vector<uint16_t> depth(size_t{shape.width} * shape.height);
+    DepthOutputs outputs;
+    outputs.depth = {std::as_writable_bytes(std::span(depth)).data(), shape.width * sizeof(uint16_t)};
+    ASSERT_TRUE(engine.compute(stack.view(), outputs));
+    for (const unsigned y : {shape.height / 4, shape.height - shape.height / 4}) {
+        EXPECT_LT(depth[size_t{y} * shape.width + shape.width / 8], 6000);
+        EXPECT_GT(depth[size_t{y} * shape.width + shape.width - shape.width / 8], 59000);
+    }
+}
+
+} // namespace
+
+TEST(Limits, smallest_picture)
+{
+    expect_two_halves({PixelFormat::Gray8, 64, 64, 2});
+}
+
+TEST(Limits, most_planes)
+{
+    expect_two_halves({PixelFormat::Gray8, 512, 512, 64});
+}
+
+TEST(Limits, largest_picture)
+{
+    expect_two_halves({PixelFormat::Gray8, 8192, 8192, 2});
+}
+
+TEST(Limits, too_large_a_stack_is_refused_before_anything_is_allocated)
+{
+    try {
+        const FocusEngine engine(Device::open(""), {PixelFormat::Rgbx, 8192, 8192, 64}, {});
+        FAIL() << "16 GiB on a device that can take at most half of its memory";
+    } catch (const EngineError &error) {
+        EXPECT_EQ(error.kind(), EngineError::Kind::TooLarge);
+        EXPECT_NE(std::string(error.what()).find("16384 MiB"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Limits, an_unknown_device_is_named_with_those_there_are)
+{
+    try {
+        Device::open("no such device");
+        FAIL();
+    } catch (const EngineError &error) {
+        EXPECT_EQ(error.kind(), EngineError::Kind::NoDevice);
+        EXPECT_NE(std::string(error.what()).find(Device::open("")->name()), std::string::npos)
+            << error.what();
+    }
+}

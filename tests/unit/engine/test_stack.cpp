@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "test_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace dff {
+
+TestStack::TestStack(const StackShape &shape, unsigned seed)
+    : shape(shape), layout(packed_layout(shape)), memory(layout.back().offset)
+{
+    const std::vector<Component> components = shape.components();
+    const Component &last = components.back();
+    memory.resize(layout.back().offset + layout.back().stride * last.height);
+
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> texture(-60.0f, 60.0f);
+    for (size_t c = 0; c < components.size(); c++) {
+        const Component &component = components[c];
+        for (unsigned y = 0; y < component.height; y++)
+            for (unsigned x = 0; x < component.width * component.sample_bytes; x++) {
+                const float value = texture(random);
+                const float sharpest = 0.5f * (shape.planes - 1) * (1.0f + std::sin(0.05f * x + 0.03f * y));
+                for (unsigned z = 0; z < shape.planes; z++) {
+                    const float contrast = 1.0f / (1.0f + std::abs(z - sharpest));
+                    const RowLayout &rows = layout[c * shape.planes + z];
+                    memory[rows.offset + rows.stride * y + x] =
+                        static_cast<std::byte>(std::clamp(128.0f + contrast * value, 0.0f, 255.0f));
+                }
+            }
+    }
+}
+
+uint8_t TestStack::sample(size_t component, unsigned x, unsigned y, unsigned z) const
+{
+    const RowLayout &rows = layout[component * shape.planes + z];
+    return static_cast<uint8_t>(memory[rows.offset + rows.stride * y + x]);
+}
+
+} // namespace dff

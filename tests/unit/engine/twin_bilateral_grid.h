@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/bilateral_grid.h"
+#include "test_stack.h"
+
+namespace dff::twin {
+
+/* Bilateral solve over the occupied cells only, found through a map: (4)-(8) of Oliva-García 2022 written for
+ * reading, in double precision. reference_u and reference_v may be empty with sigma_chroma = 0. */
+Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &reference_y,
+                       const std::vector<uint8_t> &reference_u, const std::vector<uint8_t> &reference_v,
+                       unsigned width, unsigned height, const BilateralGrid::Parameters &parameters);
+
+} // namespace dff::twin

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "twin_focus.h"
+
+#include "engine/luma.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dff::twin {
+
+namespace {
+
+int mirror(int i, int n)
+{
+    i = std::abs(i);
+    return i < n ? i : 2 * n - 2 - i;
+}
+
+Volume gradient(const Volume &picture)
+{
+    Volume result(picture.width, picture.height, picture.planes);
+    const auto at = [&](int x, int y, unsigned z) {
+        return picture.at(mirror(x, picture.width), mirror(y, picture.height), z);
+    };
+    for (unsigned z = 0; z < picture.planes; z++)
+        for (int y = 0; y < static_cast<int>(picture.height); y++)
+            for (int x = 0; x < static_cast<int>(picture.width); x++) {
+                float dx = 0.0f, dy = 0.0f;
+                for (int i = -1; i <= 1; i++) {
+                    const float weight = i == 0 ? 2.0f : 1.0f;
+                    dx += weight * (at(x + 1, y + i, z) - at(x - 1, y + i, z));
+                    dy += weight * (at(x + i, y + 1, z) - at(x + i, y - 1, z));
+                }
+                result.at(x, y, z) = std::hypot(dx, dy) / 8.0f;
+            }
+    return result;
+}
+
+/* Weights with which the fine samples of one axis make coarse sample i. */
+std::vector<float> area_weights(unsigned i, unsigned fine, unsigned coarse)
+{
+    const double from = static_cast<double>(i) * fine / coarse,
+                 to = static_cast<double>(i + 1) * fine / coarse;
+    std::vector<float> weights(fine);
+    for (unsigned k = 0; k < fine; k++)
+        weights[k] =
+            static_cast<float>(std::max(std::min(to, k + 1.0) - std::max(from, 1.0 * k), 0.0) / (to - from));
+    return weights;
+}
+
+Volume downsample(const Volume &picture, unsigned factor)
+{
+    Volume half(std::max(picture.width / factor, 1u), picture.height, picture.planes);
+    for (unsigned x = 0; x < half.width; x++) {
+        const std::vector<float> weights = area_weights(x, picture.width, half.width);
+        for (unsigned z = 0; z < picture.planes; z++)
+            for (unsigned y = 0; y < picture.height; y++)
+                for (unsigned i = 0; i < picture.width; i++)
+                    half.at(x, y, z) += weights[i] * picture.at(i, y, z);
+    }
+    Volume result(half.width, std::max(picture.height / factor, 1u), picture.planes);
+    for (unsigned y = 0; y < result.height; y++) {
+        const std::vector<float> weights = area_weights(y, picture.height, result.height);
+        for (unsigned z = 0; z < picture.planes; z++)
+            for (unsigned x = 0; x < result.width; x++)
+                for (unsigned i = 0; i < picture.height; i++)
+                    result.at(x, y, z) += weights[i] * half.at(x, i, z);
+    }
+    return result;
+}
+
+float bilinear(const Volume &picture, float x, float y, unsigned z)
+{
+    x = std::clamp(x, 0.0f, picture.width - 1.0f);
+    y = std::clamp(y, 0.0f, picture.height - 1.0f);
+    const auto l = static_cast<unsigned>(x), t = static_cast<unsigned>(y);
+    const unsigned r = std::min(l + 1, picture.width - 1), b = std::min(t + 1, picture.height - 1);
+    return std::lerp(std::lerp(picture.at(l, t, z), picture.at(r, t, z), x - l),
+                     std::lerp(picture.at(l, b, z), picture.at(r, b, z), x - l), y - t);
+}
+
+} // namespace
+
+Volume luma(const TestStack &stack)
+{
+    const StackShape &shape = stack.shape;
+    Volume result(shape.width, shape.height, shape.planes);
+    const cl_int4 channels = colour_channels(shape.format);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 0; y < shape.height; y++)
+            for (unsigned x = 0; x < shape.width; x++) {
+                const auto byte = [&](int i) { return static_cast<unsigned>(stack.sample(0, i, y, z)); };
+                const int pixel = static_cast<int>(x) * channels.s[0];
+                if (is_interleaved(shape.format)) /* weights in 1/65536, so that ties round alike */
+                    result.at(x, y, z) =
+                        (19595 * byte(pixel + channels.s[1]) + 38470 * byte(pixel + channels.s[2]) +
+                         7471 * byte(pixel + channels.s[3]) + 32768) /
+                        65536;
+                else if (shape.format == PixelFormat::Gray16)
+                    result.at(x, y, z) = (byte(2 * x) + 256 * byte(2 * x + 1)) * 255.0f / 65535.0f;
+                else
+                    result.at(x, y, z) = byte(x);
+            }
+    return result;
+}
+
+Focus focus_product(const Volume &luma, unsigned levels)
+{
+    Volume product = gradient(luma);
+    for (unsigned i = 2; i <= levels; i++) {
+        const Volume coarse = gradient(downsample(luma, i));
+        for (unsigned z = 0; z < luma.planes; z++)
+            for (unsigned y = 0; y < luma.height; y++)
+                for (unsigned x = 0; x < luma.width; x++)
+                    product.at(x, y, z) *= bilinear(coarse, (x + 0.5f) * coarse.width / luma.width - 0.5f,
+                                                    (y + 0.5f) * coarse.height / luma.height - 0.5f, z);
+    }
+
+    Focus focus{Volume(luma.width, luma.height, 1), Volume(luma.width, luma.height, 1), {}};
+    for (unsigned y = 0; y < luma.height; y++)
+        for (unsigned x = 0; x < luma.width; x++) {
+            unsigned best = 0;
+            for (unsigned z = 0; z < luma.planes; z++) {
+                if (product.at(x, y, z) > product.at(x, y, best))
+                    best = z;
+                focus.mean.at(x, y) += product.at(x, y, z) / luma.planes;
+            }
+            focus.peak.at(x, y) = product.at(x, y, best);
+            focus.peak_plane.push_back(static_cast<uint8_t>(best));
+        }
+    return focus;
+}
+
+std::vector<uint8_t> z_entropy(const Volume &luma, float threshold_bits)
+{
+    std::vector<uint8_t> moved;
+    for (unsigned y = 0; y < luma.height; y++)
+        for (unsigned x = 0; x < luma.width; x++) {
+            std::array<double, 8> histogram{};
+            for (unsigned z = 0; z < luma.planes; z++)
+                histogram[static_cast<unsigned>(luma.at(x, y, z)) / 32] += 1.0 / luma.planes;
+            double entropy = 0.0;
+            for (const double p : histogram)
+                entropy -= p > 0.0 ? p * std::log2(p) : 0.0;
+            moved.push_back(entropy > threshold_bits ? 255 : 0);
+        }
+    return moved;
+}
+
+std::vector<uint8_t> sparse_depth(const Focus &focus, const std::vector<uint8_t> *moved, float tolerance)
+{
+    const int width = focus.peak.width, height = focus.peak.height;
+    double total_mean = 0.0;
+    for (const float mean : focus.mean.values)
+        total_mean += mean / focus.mean.values.size();
+
+    std::vector<uint8_t> sparse;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            float highest = 0.0f;
+            for (int j = std::max(y - 3, 0); j <= std::min(y + 3, height - 1); j++)
+                for (int i = std::max(x - 3, 0); i <= std::min(x + 3, width - 1); i++)
+                    highest = std::max(highest, focus.peak.at(i, j));
+            const float p = focus.peak.at(x, y);
+            const bool sharp =
+                p > 0.0f && p >= tolerance * focus.mean.at(x, y) && p >= total_mean && p >= 0.5f * highest;
+            const size_t pixel = static_cast<size_t>(y) * width + x;
+            sparse.push_back(sharp && !(moved && (*moved)[pixel]) ? focus.peak_plane[pixel] : 255);
+        }
+    return sparse;
+}
+
+std::vector<uint8_t> mean_luma(const Volume &luma)
+{
+    std::vector<uint8_t> mean;
+    for (unsigned y = 0; y < luma.height; y++)
+        for (unsigned x = 0; x < luma.width; x++) {
+            float sum = 0.0f;
+            for (unsigned z = 0; z < luma.planes; z++)
+                sum += luma.at(x, y, z);
+            mean.push_back(static_cast<uint8_t>(sum / luma.planes));
+        }
+    return mean;
+}
+
+Volume gaussian_blur(const Volume &picture, const std::vector<float> &taps)
+{
+    const int radius = static_cast<int>(taps.size() / 2);
+    Volume rows(picture.width, picture.height, 1), result(picture.width, picture.height, 1);
+    for (unsigned y = 0; y < picture.height; y++)
+        for (unsigned x = 0; x < picture.width; x++)
+            for (int i = -radius; i <= radius; i++)
+                rows.at(x, y) +=
+                    taps[i + radius] * picture.at(mirror(static_cast<int>(x) + i, picture.width), y);
+    for (unsigned y = 0; y < picture.height; y++)
+        for (unsigned x = 0; x < picture.width; x++)
+            for (int i = -radius; i <= radius; i++)
+                result.at(x, y) +=
+                    taps[i + radius] * rows.at(x, mirror(static_cast<int>(y) + i, picture.height));
+    return result;
+}
+
+} // namespace dff::twin
