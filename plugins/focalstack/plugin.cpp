@@ -2,12 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "config.h"
 
-#include <gst/gst.h>
+#include "focalstack/focalstackmux.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
-    gboolean registered = TRUE;
-    (void)plugin;
+    gboolean registered = FALSE;
+    registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
     return registered;
 }
 

@@ -8,7 +8,7 @@ namespace dff {
 
 StackAssembler::StackAssembler(unsigned planes, unsigned allowance) : planes_(planes), allowance_(allowance)
 {
-    if (planes < 2 || planes > max_planes)
+    if (planes < 2 || planes > longest_stack)
         throw std::invalid_argument("a stack has 2 to 64 planes");
 }
 
@@ -26,7 +26,7 @@ FrameVerdict StackAssembler::add(uint64_t sweep, unsigned plane)
     }
     open_up_to(sweep);
     OpenSweep &open = open_[sweep - *next_sweep_];
-    if (open.present >> plane & 1)
+    if (open.present & plane_bit(plane))
         return FrameVerdict::Repeated;
     put(open, plane);
     close_what_is_over();
@@ -51,23 +51,21 @@ void StackAssembler::begin(uint64_t sweep)
 void StackAssembler::open_up_to(uint64_t sweep)
 {
     while (open_.size() <= sweep - *next_sweep_)
-        open_.push_back({*next_sweep_ + open_.size(), 0, 0, 0, 0});
+        open_.push_back({*next_sweep_ + open_.size(), 0, 0, {planes_, 0}, 0});
 }
 
-/* A sweep that begins in the nearer half runs away from the camera. */
 void StackAssembler::put(OpenSweep &open, unsigned plane)
 {
     if (open.present == 0) {
-        open.first_plane = plane;
+        open.direction = SweepDirection(planes_, plane);
         open.last_plane = plane;
     }
-    const bool outwards = open.first_plane < (planes_ + 1) / 2;
-    const bool backwards = outwards ? plane < open.last_plane : plane > open.last_plane;
+    const bool backwards = open.direction.before(plane, open.last_plane);
     if (open.overtaken > 0 || backwards)
         reordered_++;
     if (!backwards)
         open.last_plane = plane;
-    open.present |= uint64_t{1} << plane;
+    open.present |= plane_bit(plane);
 
     for (OpenSweep &earlier : open_) {
         if (earlier.sweep >= open.sweep)
@@ -87,7 +85,7 @@ void StackAssembler::close_what_is_over()
 {
     size_t over = 0;
     for (size_t i = 0; i < open_.size(); i++)
-        if (open_[i].present == all_planes() || open_[i].overtaken > allowance_)
+        if (open_[i].present == all_planes(planes_) || open_[i].overtaken > allowance_)
             over = i + 1;
     while (over-- > 0)
         close_front();

@@ -2,18 +2,13 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "focalstack/frame_verdict.h"
+
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 namespace dff {
-
-/* What becomes of a frame. Only a taken one goes into a stack. */
-enum class FrameVerdict {
-    Taken,
-    Repeated, /* this plane of this sweep is there already */
-    Late,     /* its sweep is over */
-};
 
 /* A sweep that is over. Bit z of `present` is set where plane z came; 0 where not one frame did. */
 struct FinishedSweep {
@@ -34,15 +29,10 @@ struct FinishedSweep {
  */
 class StackAssembler {
 public:
-    static constexpr unsigned max_planes = 64;
-    static constexpr uint64_t longest_gap = 256;
-
+    /* Throws std::invalid_argument unless there are 2 to 64 planes. */
     StackAssembler(unsigned planes, unsigned allowance);
 
-    unsigned planes() const { return planes_; }
-    uint64_t all_planes() const { return ~uint64_t{0} >> (max_planes - planes_); }
-
-    /* `plane` is below planes(). Take what next_finished() has before the next frame. */
+    /* `plane` is below `planes`. Take what next_finished() has before the next frame. */
     FrameVerdict add(uint64_t sweep, unsigned plane);
 
     /* Ends all sweeps that were begun. */
@@ -59,7 +49,7 @@ private:
         uint64_t sweep;
         uint64_t present;
         unsigned overtaken;
-        unsigned first_plane;
+        SweepDirection direction;
         unsigned last_plane;
     };
 

@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:element-focalstackmux
+ *
+ * Puts the frames of a focus sweep together to focal stacks, one buffer a sweep, in which plane 0 is the
+ * nearest.
+ *
+ * On the pad `sink` the frames come in the order in which they were taken, each with a #GstFocusMeta that
+ * says which plane of which sweep it is (lenssweepsrc, lenssweeptag and lenssweeptestsrc write it). On the
+ * pads `sink_0`, `sink_1`, ... each source gives the frames of one plane; there no meta is needed, and frames
+ * belong together by their metas where they have them, otherwise by their running time.
+ *
+ * A sweep is over when all of its planes are there, or when a third frame of later sweeps has come (two may
+ * overtake). What then is missing costs this one stack, or is filled in: see #focalstackmux:on-missing. Every
+ * loss is counted in #focalstackmux:stats and posted as a QoS message. A source that numbers its sweeps anew
+ * is followed after one sweep. A sweep of which not one frame came is never made up.
+ *
+ * A stack's time is that of its first exposure's start, its duration reaches to the end of the last exposure.
+ *
+ * With window=rolling every frame makes a stack of the last planes, once all of them were there; such a stack
+ * costs planes + 1 copies of a frame.
+ *
+ * ## Example pipeline
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=4 ! m.sink_0  videotestsrc num-buffers=4 pattern=ball ! m.sink_1
+ * focalstackmux name=m ! fakesink silent=false -v
+ * ]| makes four stacks of two planes.
+ */
+#include "focalstack/focalstackmux.h"
+
+#include "focalstack/mux_core.h"
+#include "focalstack/stack_caps.h"
+
+#include <cstdio>
+
+GST_DEBUG_CATEGORY(focalstackmux_debug);
+#define GST_CAT_DEFAULT focalstackmux_debug
+
+namespace {
+
+struct FocalStackMuxState {
+    FocalStackMuxState(GstElement *element, GstPad *source) : core(element, source) {}
+
+    dff::MuxCore core;
+    dff::MuxSettings settings; /* guarded by the object's lock */
+};
+
+enum { PROP_PLANES = 1, PROP_ON_MISSING, PROP_WINDOW, PROP_STATS };
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(FOCAL_STACK_FRAME_CAPS));
+GstStaticPadTemplate plane_template = GST_STATIC_PAD_TEMPLATE("sink_%u", GST_PAD_SINK, GST_PAD_REQUEST,
+                                                              GST_STATIC_CAPS(FOCAL_STACK_FRAME_CAPS));
+GstStaticPadTemplate source_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
+
+GType on_missing_get_type()
+{
+    static GType type;
+    static const GEnumValue values[] = {
+        {static_cast<int>(dff::OnMissing::Drop), "Do not send the stack", "drop"},
+        {static_cast<int>(dff::OnMissing::Hold), "Take the plane of the last stack", "hold"},
+        {static_cast<int>(dff::OnMissing::Repeat), "Take the neighbouring plane of this sweep", "repeat"},
+        {0, nullptr, nullptr},
+    };
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, g_enum_register_static("GstFocalStackMuxOnMissing", values));
+    return type;
+}
+
+GType window_get_type()
+{
+    static GType type;
+    static const GEnumValue values[] = {
+        {static_cast<int>(dff::StackWindow::Sweep), "One stack for each sweep", "sweep"},
+        {static_cast<int>(dff::StackWindow::Rolling), "A stack of the last planes at each frame", "rolling"},
+        {0, nullptr, nullptr},
+    };
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, g_enum_register_static("GstFocalStackMuxWindow", values));
+    return type;
+}
+
+} // namespace
+
+struct _GstFocalStackMux {
+    GstElement parent;
+    GstPad *sink;
+    GstPad *source;
+    FocalStackMuxState *state;
+};
+
+G_DEFINE_FINAL_TYPE(GstFocalStackMux, gst_focal_stack_mux, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(focalstackmux, "focalstackmux", GST_RANK_NONE, GST_TYPE_FOCAL_STACK_MUX)
+
+namespace {
+
+dff::MuxInput &input_of(GstPad *pad)
+{
+    return *static_cast<dff::MuxInput *>(gst_pad_get_element_private(pad));
+}
+
+GstFlowReturn chain(GstPad *pad, GstObject *parent, GstBuffer *buffer)
+{
+    const dff::BufferPtr frame(buffer);
+    return GST_FOCAL_STACK_MUX(parent)->state->core.take(input_of(pad), frame.get());
+}
+
+gboolean take_caps(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
+{
+    GstCaps *caps = nullptr;
+    gst_event_parse_caps(event, &caps);
+    const bool taken = self->state->core.set_caps(input, caps);
+    gst_event_unref(event);
+    return taken;
+}
+
+gboolean take_segment(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
+{
+    const GstSegment *segment = nullptr;
+    gst_event_parse_segment(event, &segment);
+    self->state->core.set_segment(input, *segment);
+    gst_event_unref(event);
+    return TRUE;
+}
+
+/* A pad's own stream begins and ends; the mux's does so with the first and last of them. */
+gboolean begin_stream(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
+{
+    self->state->core.begin(input);
+    if (!input.plane)
+        return gst_pad_push_event(self->source, event);
+    gst_event_unref(event);
+    return TRUE;
+}
+
+gboolean end_stream(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
+{
+    if (self->state->core.end(input))
+        return gst_pad_push_event(self->source, event);
+    gst_event_unref(event);
+    return TRUE;
+}
+
+gboolean sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(parent);
+    dff::MuxInput &input = input_of(pad);
+
+    switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_STREAM_START:
+        return begin_stream(self, input, event);
+    case GST_EVENT_CAPS:
+        return take_caps(self, input, event);
+    case GST_EVENT_SEGMENT:
+        return take_segment(self, input, event);
+    case GST_EVENT_GAP:
+        return self->state->core.pass_gap(input, event);
+    case GST_EVENT_EOS:
+        return end_stream(self, input, event);
+    case GST_EVENT_FLUSH_START:
+        self->state->core.begin_flush();
+        return gst_pad_push_event(self->source, event);
+    case GST_EVENT_FLUSH_STOP:
+        self->state->core.end_flush(input);
+        return gst_pad_push_event(self->source, event);
+    default:
+        return gst_pad_event_default(pad, parent, event);
+    }
+}
+
+gboolean sink_query(GstPad *pad, GstObject *parent, GstQuery *query)
+{
+    switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_CAPS:
+        dff::answer_caps_query(query, pad, GST_FOCAL_STACK_MUX(parent)->source,
+                               dff::frame_caps_from_stack_caps);
+        return TRUE;
+    case GST_QUERY_ALLOCATION:
+        /* Every frame is copied: any layout will do, and downstream's buffers are of no use. */
+        gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+        return TRUE;
+    default:
+        return gst_pad_query_default(pad, parent, query);
+    }
+}
+
+gboolean answer_latency(GstFocalStackMux *self, GstQuery *query)
+{
+    gboolean live = FALSE;
+    GstClockTime least = 0;
+    GstClockTime most = GST_CLOCK_TIME_NONE;
+    if (!gst_pad_query_default(self->source, GST_OBJECT(self), query))
+        return FALSE;
+    const GstClockTime own = self->state->core.latency();
+    gst_query_parse_latency(query, &live, &least, &most);
+    gst_query_set_latency(query, live, least + own, GST_CLOCK_TIME_IS_VALID(most) ? most + own : most);
+    return TRUE;
+}
+
+gboolean source_query(GstPad *pad, GstObject *parent, GstQuery *query)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(parent);
+    switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_LATENCY:
+        return answer_latency(self, query);
+    default:
+        return gst_pad_query_default(pad, parent, query);
+    }
+}
+
+void add_input(GstFocalStackMux *self, GstPad *pad, std::optional<unsigned> plane)
+{
+    gst_pad_set_chain_function(pad, chain);
+    gst_pad_set_event_function(pad, sink_event);
+    gst_pad_set_query_function(pad, sink_query);
+    gst_pad_set_element_private(pad, &self->state->core.add_input(pad, plane));
+    gst_element_add_pad(GST_ELEMENT(self), pad);
+}
+
+/* The plane of the pad that is asked for; without a name, the nearest one that has no pad. */
+unsigned requested_plane(GstElement *element, const gchar *name)
+{
+    unsigned plane = 0;
+    if (name)
+        return std::sscanf(name, "sink_%u", &plane) == 1 ? plane : dff::longest_stack;
+    for (; plane < dff::longest_stack; plane++) {
+        g_autofree gchar *free_name = g_strdup_printf("sink_%u", plane);
+        g_autoptr(GstPad) taken = gst_element_get_static_pad(element, free_name);
+        if (!taken)
+            break;
+    }
+    return plane;
+}
+
+GstPad *request_new_pad(GstElement *element, GstPadTemplate *templ, const gchar *name, const GstCaps *)
+{
+    const unsigned plane = requested_plane(element, name);
+    if (plane >= dff::longest_stack) {
+        GST_ERROR_OBJECT(element, "the pads are sink_0 to sink_63: a stack has 64 planes at most");
+        return nullptr;
+    }
+
+    g_autofree gchar *pad_name = g_strdup_printf("sink_%u", plane);
+    g_autoptr(GstPad) taken = gst_element_get_static_pad(element, pad_name);
+    if (taken) {
+        GST_ERROR_OBJECT(element, "there is a pad %s already", pad_name);
+        return nullptr;
+    }
+    GstPad *pad = gst_pad_new_from_template(templ, pad_name);
+    add_input(GST_FOCAL_STACK_MUX(element), pad, plane);
+    return pad;
+}
+
+void release_pad(GstElement *element, GstPad *pad)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(element);
+    gst_pad_set_active(pad, FALSE);
+    self->state->core.remove_input(pad);
+    gst_element_remove_pad(element, pad);
+}
+
+GstStateChangeReturn change_state(GstElement *element, GstStateChange transition)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(element);
+    dff::MuxCore &core = self->state->core;
+
+    if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+        GST_OBJECT_LOCK(self);
+        const dff::MuxSettings settings = self->state->settings;
+        GST_OBJECT_UNLOCK(self);
+        if (!core.start(settings))
+            return GST_STATE_CHANGE_FAILURE;
+    }
+    if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+        core.begin_flush();
+    const GstStateChangeReturn changed =
+        GST_ELEMENT_CLASS(gst_focal_stack_mux_parent_class)->change_state(element, transition);
+    if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
+        core.stop();
+    return changed;
+}
+
+GstStructure *create_stats(const dff::MuxStatistics &counts)
+{
+    return gst_structure_new("focal-stack-mux-stats", "frames", G_TYPE_UINT64, counts.frames, "stacks",
+                             G_TYPE_UINT64, counts.stacks, "dropped-stacks", G_TYPE_UINT64, counts.dropped,
+                             "lost", G_TYPE_UINT64, counts.lost, "repeated", G_TYPE_UINT64, counts.repeated,
+                             "late", G_TYPE_UINT64, counts.late, "reordered", G_TYPE_UINT64, counts.reordered,
+                             "damaged", G_TYPE_UINT64, counts.damaged, nullptr);
+}
+
+void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(object);
+    dff::MuxSettings &settings = self->state->settings;
+
+    GST_OBJECT_LOCK(self);
+    switch (id) {
+    case PROP_PLANES:
+        settings.planes = g_value_get_uint(value);
+        break;
+    case PROP_ON_MISSING:
+        settings.on_missing = static_cast<dff::OnMissing>(g_value_get_enum(value));
+        break;
+    case PROP_WINDOW:
+        settings.window = static_cast<dff::StackWindow>(g_value_get_enum(value));
+        break;
+    default:
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+    }
+    GST_OBJECT_UNLOCK(self);
+}
+
+void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
+{
+    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(object);
+    GST_OBJECT_LOCK(self);
+    const dff::MuxSettings settings = self->state->settings;
+    GST_OBJECT_UNLOCK(self);
+
+    switch (id) {
+    case PROP_PLANES:
+        g_value_set_uint(value, settings.planes);
+        break;
+    case PROP_ON_MISSING:
+        g_value_set_enum(value, static_cast<int>(settings.on_missing));
+        break;
+    case PROP_WINDOW:
+        g_value_set_enum(value, static_cast<int>(settings.window));
+        break;
+    case PROP_STATS:
+        g_value_take_boxed(value, create_stats(self->state->core.statistics()));
+        break;
+    default:
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+    }
+}
+
+void finalize(GObject *object)
+{
+    delete GST_FOCAL_STACK_MUX(object)->state;
+    G_OBJECT_CLASS(gst_focal_stack_mux_parent_class)->finalize(object);
+}
+
+void install_properties(GObjectClass *object_class)
+{
+    const auto settable =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
+    g_object_class_install_property(
+        object_class, PROP_PLANES,
+        g_param_spec_uint("planes", "Planes",
+                          "Planes a stack, 2 to 64 (0: as the frames' metas or the pads say)", 0,
+                          GST_FOCAL_STACK_MAX_PLANES, 0, settable));
+    g_object_class_install_property(
+        object_class, PROP_ON_MISSING,
+        g_param_spec_enum(
+            "on-missing", "On missing",
+            "What becomes of a stack of which planes are missing; a sweep of which no frame came "
+            "is always dropped",
+            on_missing_get_type(), static_cast<int>(dff::OnMissing::Drop), settable));
+    g_object_class_install_property(object_class, PROP_WINDOW,
+                                    g_param_spec_enum("window", "Window", "Which frames make a stack",
+                                                      window_get_type(),
+                                                      static_cast<int>(dff::StackWindow::Sweep), settable));
+    g_object_class_install_property(
+        object_class, PROP_STATS,
+        g_param_spec_boxed(
+            "stats", "Statistics",
+            "Counts since the start, all guint64: frames that came, stacks sent, dropped-stacks; "
+            "frames lost, repeated (came twice), late (after their sweep was over), reordered "
+            "(put in their place), damaged (counted as lost too)",
+            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+}
+
+} // namespace
+
+static void gst_focal_stack_mux_class_init(GstFocalStackMuxClass *klass)
+{
+    GObjectClass *object_class = G_OBJECT_CLASS(klass);
+    GstElementClass *element_class = GST_ELEMENT_CLASS(klass);
+    GST_DEBUG_CATEGORY_INIT(focalstackmux_debug, "focalstackmux", 0, "frames to focal stacks");
+
+    object_class->set_property = set_property;
+    object_class->get_property = get_property;
+    object_class->finalize = finalize;
+    install_properties(object_class);
+
+    element_class->request_new_pad = request_new_pad;
+    element_class->release_pad = release_pad;
+    element_class->change_state = change_state;
+    gst_element_class_add_static_pad_template(element_class, &sink_template);
+    gst_element_class_add_static_pad_template(element_class, &plane_template);
+    gst_element_class_add_static_pad_template(element_class, &source_template);
+    gst_element_class_set_static_metadata(element_class, "Focal stack muxer", "Muxer/Video",
+                                          "Puts the frames of focus sweeps together to focal stacks",
+                                          "gst-plugins-dff authors");
+    gst_type_mark_as_plugin_api(on_missing_get_type(), static_cast<GstPluginAPIFlags>(0));
+    gst_type_mark_as_plugin_api(window_get_type(), static_cast<GstPluginAPIFlags>(0));
+}
+
+static void gst_focal_stack_mux_init(GstFocalStackMux *self)
+{
+    self->source = gst_pad_new_from_static_template(&source_template, "src");
+    self->state = new FocalStackMuxState(GST_ELEMENT(self), self->source);
+    gst_pad_set_query_function(self->source, source_query);
+    gst_element_add_pad(GST_ELEMENT(self), self->source);
+
+    self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
+    add_input(self, self->sink, std::nullopt);
+}

@@ -1,0 +1,431 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/mux_core.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+GST_DEBUG_CATEGORY_EXTERN(focalstackmux_debug);
+#define GST_CAT_DEFAULT focalstackmux_debug
+
+namespace dff {
+
+namespace {
+
+GstClockTime frame_period(const GstVideoInfo &info)
+{
+    const gint numerator = GST_VIDEO_INFO_FPS_N(&info);
+    return numerator > 0 ? gst_util_uint64_scale(GST_SECOND, GST_VIDEO_INFO_FPS_D(&info), numerator) : 0;
+}
+
+GstFocalStackInfo stack_shape(const GstVideoInfo &frame, unsigned planes, bool side_by_side)
+{
+    GstFocalStackInfo shape{frame, planes};
+    if (!side_by_side)
+        gst_util_fraction_multiply(frame.fps_n, frame.fps_d, 1, static_cast<gint>(planes), &shape.frame.fps_n,
+                                   &shape.frame.fps_d);
+    return shape;
+}
+
+bool same_shape(const GstFocalStackInfo &a, const GstFocalStackInfo &b)
+{
+    return a.planes == b.planes && gst_video_info_is_equal(&a.frame, &b.frame);
+}
+
+} // namespace
+
+void MuxInput::reset()
+{
+    has_caps = false;
+    gst_video_info_init(&info);
+    gst_segment_init(&segment, GST_FORMAT_UNDEFINED);
+    numbering = {};
+    live.reset();
+    ended = false;
+}
+
+MuxInput &MuxCore::add_input(GstPad *pad, std::optional<unsigned> plane)
+{
+    const std::lock_guard lock(facts_);
+    MuxInput &input = *inputs_.emplace_back(std::make_unique<MuxInput>(pad, plane));
+    if (plane)
+        gate_.open(*plane);
+    return input;
+}
+
+void MuxCore::remove_input(GstPad *pad)
+{
+    const std::lock_guard lock(facts_);
+    const auto found =
+        std::find_if(inputs_.begin(), inputs_.end(), [pad](const auto &input) { return input->pad == pad; });
+    if (found == inputs_.end())
+        return;
+    if ((*found)->plane)
+        gate_.close(*(*found)->plane);
+    inputs_.erase(found);
+}
+
+MuxStatistics MuxCore::statistics() const
+{
+    const std::lock_guard lock(facts_);
+    return published_;
+}
+
+GstClockTime MuxCore::latency() const
+{
+    const std::lock_guard lock(facts_);
+    return latency_;
+}
+
+void MuxCore::publish()
+{
+    const std::lock_guard lock(facts_);
+    published_ = counting_;
+}
+
+/* Either one linked pad with all planes, or a pad for each plane without a hole. */
+bool MuxCore::inputs_make_sense()
+{
+    bool all_in_one = false;
+    uint64_t linked = 0;
+    {
+        const std::lock_guard lock(facts_);
+        for (const auto &input : inputs_) {
+            if (!gst_pad_is_linked(input->pad))
+                continue;
+            if (input->plane)
+                linked |= plane_bit(*input->plane);
+            else
+                all_in_one = true;
+        }
+        side_by_side_ = linked != 0;
+    }
+
+    if (all_in_one && linked != 0) {
+        GST_ELEMENT_ERROR(element_, CORE, PAD,
+                          ("Both the pad \"sink\" and pads of single planes are linked."),
+                          ("Link either \"sink\", for the frames of all planes in the order of time, or "
+                           "\"sink_0\", \"sink_1\", ..., one for each plane."));
+        return false;
+    }
+    if (settings_.planes == 0 && (linked & (linked + 1)) != 0) {
+        GST_ELEMENT_ERROR(
+            element_, CORE, PAD,
+            ("The pad \"sink_%d\" is not linked, but one of a farther plane is.", std::countr_one(linked)),
+            ("Link the pads from \"sink_0\" on, one for each plane, or set planes if the pad is "
+             "linked later."));
+        return false;
+    }
+    return true;
+}
+
+bool MuxCore::start(const MuxSettings &settings)
+{
+    const std::lock_guard lock(stream_);
+    settings_ = settings;
+    counting_ = {};
+    publish();
+    output_.restart();
+    own_stream_begun_ = false;
+    gate_.close_all();
+    gate_.let_in();
+    {
+        const std::lock_guard facts(facts_);
+        latency_ = 0;
+        origin_ns_.reset();
+        for (const auto &input : inputs_) {
+            input->reset();
+            if (input->plane && gst_pad_is_linked(input->pad))
+                gate_.open(*input->plane);
+        }
+    }
+    return inputs_make_sense();
+}
+
+void MuxCore::stop()
+{
+    const std::lock_guard lock(stream_);
+    maker_.reset();
+}
+
+void MuxCore::end_flush(MuxInput &input)
+{
+    const std::lock_guard lock(stream_);
+    maker_.reset();
+    output_.restart();
+    gate_.let_in();
+    if (input.plane)
+        gate_.open(*input.plane);
+    const std::lock_guard facts(facts_);
+    input.numbering = {};
+    input.ended = false;
+    origin_ns_.reset();
+}
+
+void MuxCore::begin(MuxInput &input)
+{
+    const std::lock_guard lock(stream_);
+    if (!input.plane)
+        finish();
+    else if (!std::exchange(own_stream_begun_, true))
+        output_.begin_own_stream();
+}
+
+bool MuxCore::set_caps(MuxInput &input, const GstCaps *caps)
+{
+    input.has_caps = gst_video_info_from_caps(&input.info, caps);
+    return input.has_caps;
+}
+
+void MuxCore::set_segment(MuxInput &input, const GstSegment &segment)
+{
+    if (!input.plane && !gst_segment_is_equal(&input.segment, &segment)) {
+        const std::lock_guard lock(stream_);
+        finish();
+        output_.set_segment(segment);
+    }
+    gst_segment_copy_into(&segment, &input.segment);
+}
+
+bool MuxCore::pass_gap(MuxInput &input, GstEvent *gap)
+{
+    if (!input.plane) {
+        const std::lock_guard lock(stream_);
+        return output_.send_gap(gap);
+    }
+    TimeSpan time;
+    gst_event_parse_gap(gap, &time.start, &time.duration);
+    gst_event_unref(gap);
+    const GstClockTime period = input.has_caps ? frame_period(input.info) : 0;
+    if (GST_CLOCK_TIME_IS_VALID(time.duration) && time.duration > period)
+        time.start += time.duration - period;
+    time.start = gst_segment_to_running_time(&input.segment, GST_FORMAT_TIME, time.start);
+    gate_.arrive(*input.plane, number(input, time));
+    return true;
+}
+
+bool MuxCore::end(MuxInput &input)
+{
+    if (input.plane)
+        gate_.close(*input.plane);
+    {
+        const std::lock_guard facts(facts_);
+        input.ended = true;
+        for (const auto &other : inputs_)
+            if (!other->ended && gst_pad_is_linked(other->pad))
+                return false;
+    }
+
+    const std::lock_guard lock(stream_);
+    const uint64_t dropped = counting_.dropped;
+    const uint64_t lost = counting_.lost;
+    finish();
+    if (counting_.lost > lost || counting_.dropped > dropped)
+        GST_ELEMENT_WARNING(
+            element_, STREAM, FAILED, ("The stream ended in mid-sweep."),
+            ("%" G_GUINT64_FORMAT " planes did not come; %s", counting_.lost - lost,
+             counting_.dropped > dropped ? "the stack was dropped" : "the stack was filled up and sent"));
+    return true;
+}
+
+/* The sweep of a frame that comes on a pad of its own plane and has no meta. */
+uint64_t MuxCore::number(MuxInput &input, const TimeSpan &time)
+{
+    const bool timed = GST_CLOCK_TIME_IS_VALID(time.start);
+    uint64_t origin = 0;
+    if (timed) {
+        const std::lock_guard lock(facts_);
+        if (!origin_ns_)
+            origin_ns_ = time.start;
+        origin = *origin_ns_;
+    }
+    return input.numbering.next(timed ? std::optional(time.start) : std::nullopt,
+                                input.has_caps ? frame_period(input.info) : 0, origin);
+}
+
+bool MuxCore::place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame)
+{
+    const GstFocusMeta *meta = gst_buffer_get_focus_meta(buffer);
+    if (!meta && !input.plane) {
+        GST_ELEMENT_ERROR(element_, STREAM, WRONG_TYPE,
+                          ("The frames do not say which plane of which sweep they are."),
+                          ("Put lenssweeptag before this element, or link each plane's source to a pad "
+                           "\"sink_0\", \"sink_1\", ... of its own."));
+        return false;
+    }
+
+    frame.time = {GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer)};
+    if (!GST_CLOCK_TIME_IS_VALID(frame.time.duration) && frame_period(input.info) > 0)
+        frame.time.duration = frame_period(input.info);
+    gst_focus_info_init(&frame.focus);
+    if (meta)
+        gst_focus_meta_get_focus(meta, &frame.focus);
+    if (!input.plane)
+        return true;
+
+    frame.time.start = gst_segment_to_running_time(&input.segment, GST_FORMAT_TIME, frame.time.start);
+    frame.focus.plane = *input.plane;
+    if (!meta)
+        frame.focus.sweep = number(input, frame.time);
+    return true;
+}
+
+/* A live source cannot be made to wait: there a sweep waits for later frames only. */
+bool MuxCore::wait_for_others(MuxInput &input, uint64_t sweep)
+{
+    if (!input.live) {
+        gboolean live = FALSE;
+        GstQuery *query = gst_query_new_latency();
+        if (gst_pad_peer_query(input.pad, query))
+            gst_query_parse_latency(query, &live, nullptr, nullptr);
+        gst_query_unref(query);
+        input.live = live;
+    }
+    gate_.arrive(*input.plane, sweep);
+    return *input.live || gate_.wait(sweep);
+}
+
+GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)
+{
+    PlaneFrame frame{buffer, nullptr, {}, {}};
+    if (!input.has_caps)
+        return GST_FLOW_NOT_NEGOTIATED;
+    if (!place(input, buffer, frame))
+        return GST_FLOW_ERROR;
+    if (input.plane && !wait_for_others(input, frame.focus.sweep))
+        return GST_FLOW_FLUSHING;
+
+    const std::lock_guard lock(stream_);
+    counting_.frames++;
+    const GstFlowReturn flow = assemble(input, frame);
+    publish();
+    return flow;
+}
+
+/* Planes a stack, or 0 with the error posted. */
+unsigned MuxCore::planes_for(const MuxInput &input, const GstFocusInfo &focus)
+{
+    unsigned planes = settings_.planes;
+    if (input.plane) {
+        const std::lock_guard lock(facts_);
+        for (const auto &other : inputs_)
+            if (settings_.planes == 0 && other->plane && gst_pad_is_linked(other->pad))
+                planes = std::max(planes, *other->plane + 1);
+    } else if (planes == 0)
+        planes = focus.planes;
+    else if (focus.planes != 0 && focus.planes != planes) {
+        GST_ELEMENT_ERROR(
+            element_, STREAM, FORMAT,
+            ("The frames are of sweeps of %u planes, but planes=%u was asked for.", focus.planes, planes),
+            ("Set planes=0 to go by the frames."));
+        return 0;
+    }
+
+    if (planes < 2 || planes > longest_stack) {
+        GST_ELEMENT_ERROR(element_, STREAM, FORMAT, ("A stack has 2 to 64 planes, not %u.", planes),
+                          ("Set planes, or planes of the element that gives the frames their sweep."));
+        return 0;
+    }
+    return planes;
+}
+
+GstFlowReturn MuxCore::assemble(MuxInput &input, PlaneFrame &frame)
+{
+    const unsigned planes = planes_for(input, frame.focus);
+    if (planes == 0)
+        return GST_FLOW_ERROR;
+    if (frame.focus.plane >= planes) {
+        refuse_damaged(frame, "its plane is not one of the sweep's");
+        return GST_FLOW_OK;
+    }
+    const GstFlowReturn flow = use_shape(stack_shape(input.info, planes, input.plane.has_value()));
+    return flow == GST_FLOW_OK ? put(frame, input.info) : flow;
+}
+
+GstFlowReturn MuxCore::use_shape(const GstFocalStackInfo &shape)
+{
+    if (maker_ && same_shape(maker_->info(), shape))
+        return GST_FLOW_OK;
+    const GstFlowReturn flow = finish();
+    if (flow != GST_FLOW_OK)
+        return flow;
+    if (!inputs_make_sense())
+        return GST_FLOW_ERROR;
+    if (!output_.set_shape(shape))
+        return GST_FLOW_NOT_NEGOTIATED;
+
+    const unsigned allowance = side_by_side_ ? shape.planes - 1 : StackMaker::default_allowance;
+    maker_ = StackMaker::create(settings_.window, shape, settings_.on_missing, allowance, counting_);
+    update_latency(shape);
+    return GST_FLOW_OK;
+}
+
+GstFlowReturn MuxCore::put(PlaneFrame &frame, const GstVideoInfo &info)
+{
+    GstVideoFrame picture;
+    if (!gst_video_frame_map(&picture, &info, frame.buffer, GST_MAP_READ)) {
+        refuse_damaged(frame, "it is shorter than its caps say");
+        return GST_FLOW_OK;
+    }
+    frame.picture = &picture;
+    const bool put = maker_->add(frame);
+    gst_video_frame_unmap(&picture);
+    if (!put) {
+        GST_ELEMENT_ERROR(
+            element_, RESOURCE, NO_SPACE_LEFT, ("There is no memory for a focal stack."),
+            ("%" G_GSIZE_FORMAT " bytes a stack", gst_focal_stack_info_get_size(&maker_->info())));
+        return GST_FLOW_ERROR;
+    }
+    return send_outcomes();
+}
+
+void MuxCore::refuse_damaged(const PlaneFrame &frame, const char *why)
+{
+    counting_.damaged++;
+    GST_ELEMENT_WARNING(element_, STREAM, DECODE, ("A damaged frame was left out."),
+                        ("Plane %u of sweep %" G_GUINT64_FORMAT ", %" G_GSIZE_FORMAT " bytes: %s",
+                         frame.focus.plane, frame.focus.sweep, gst_buffer_get_size(frame.buffer), why));
+}
+
+GstFlowReturn MuxCore::send_outcomes()
+{
+    publish();
+    GstFlowReturn flow = GST_FLOW_OK;
+    while (flow == GST_FLOW_OK) {
+        auto outcome = maker_->next_outcome();
+        if (!outcome)
+            break;
+        flow = output_.send(std::move(*outcome), counting_);
+    }
+    return flow;
+}
+
+GstFlowReturn MuxCore::finish()
+{
+    if (!maker_)
+        return GST_FLOW_OK;
+    maker_->finish();
+    const GstFlowReturn flow = send_outcomes();
+    maker_.reset();
+    return flow;
+}
+
+/* A stack is sent when its last frame is there; one to be filled up waits for frames that may have been
+ * overtaken. Planes on pads of their own come within one frame period. */
+void MuxCore::update_latency(const GstFocalStackInfo &shape)
+{
+    const GstClockTime stack_period = frame_period(shape.frame);
+    const GstClockTime period = side_by_side_ ? stack_period : stack_period / shape.planes;
+    GstClockTime latency = side_by_side_ ? stack_period : period * (shape.planes - 1);
+    if (settings_.on_missing != OnMissing::Drop && settings_.window == StackWindow::Sweep)
+        latency += side_by_side_ ? period : period * (StackMaker::default_allowance + 1);
+    {
+        const std::lock_guard lock(facts_);
+        if (latency == std::exchange(latency_, latency))
+            return;
+    }
+    gst_element_post_message(element_, gst_message_new_latency(GST_OBJECT(element_)));
+}
+
+} // namespace dff

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "focalstack/frame_numbering.h"
+#include "focalstack/mux_output.h"
+#include "focalstack/stack_maker.h"
+#include "focalstack/sweep_gate.h"
+
+#include <gst/gst.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace dff {
+
+struct MuxSettings {
+    unsigned planes = 0; /* 0: as the frames or the pads say */
+    OnMissing on_missing = OnMissing::Drop;
+    StackWindow window = StackWindow::Sweep;
+};
+
+/* What the mux knows of one of its sink pads. */
+struct MuxInput {
+    MuxInput(GstPad *sink_pad, std::optional<unsigned> of_plane) : pad(sink_pad), plane(of_plane) { reset(); }
+    void reset();
+
+    GstPad *pad;
+    std::optional<unsigned> plane; /* empty: frames of all planes come here */
+
+    /* These belong to the pad's streaming thread. */
+    bool has_caps;
+    GstVideoInfo info;
+    GstSegment segment;
+    FrameNumbering numbering;
+    std::optional<bool> live;
+
+    bool ended; /* guarded by MuxCore's facts_ */
+};
+
+/* The mux behind its pads. */
+class MuxCore {
+public:
+    MuxCore(GstElement *element, GstPad *source) : element_(element), output_(element, source) {}
+
+    /* Any thread. */
+    MuxInput &add_input(GstPad *pad, std::optional<unsigned> plane);
+    void remove_input(GstPad *pad);
+    MuxStatistics statistics() const;
+    GstClockTime latency() const;
+
+    /* Around the streaming. start() returns false, with the error posted, if the pads make no sense. */
+    bool start(const MuxSettings &settings);
+    void stop();
+
+    /* The input's streaming thread. */
+    GstFlowReturn take(MuxInput &input, GstBuffer *buffer);
+    bool set_caps(MuxInput &input, const GstCaps *caps);
+    void set_segment(MuxInput &input, const GstSegment &segment);
+    bool pass_gap(MuxInput &input, GstEvent *gap);
+    void begin(MuxInput &input);
+    /* True if this was the last input's end, so that the whole stream ends. */
+    bool end(MuxInput &input);
+
+    /* Around a flush. */
+    void begin_flush() { gate_.shut(); }
+    void end_flush(MuxInput &input);
+
+private:
+    bool inputs_make_sense();
+    bool place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame);
+    uint64_t number(MuxInput &input, const TimeSpan &time);
+    bool wait_for_others(MuxInput &input, uint64_t sweep);
+    unsigned planes_for(const MuxInput &input, const GstFocusInfo &focus);
+    GstFlowReturn assemble(MuxInput &input, PlaneFrame &frame);
+    GstFlowReturn use_shape(const GstFocalStackInfo &shape);
+    GstFlowReturn put(PlaneFrame &frame, const GstVideoInfo &info);
+    void refuse_damaged(const PlaneFrame &frame, const char *why);
+    GstFlowReturn send_outcomes();
+    GstFlowReturn finish();
+    void update_latency(const GstFocalStackInfo &shape);
+    void publish();
+
+    GstElement *element_;
+
+    /* stream_ is held while frames are put in place and stacks are sent; facts_ for a few lines, also while
+     * stream_ is held; the gate waits without either. */
+    std::mutex stream_;
+    MuxSettings settings_;
+    MuxOutput output_;
+    std::unique_ptr<StackMaker> maker_;
+    MuxStatistics counting_;
+    bool own_stream_begun_ = false;
+
+    mutable std::mutex facts_;
+    bool side_by_side_ = false; /* the planes have a pad each */
+    std::vector<std::unique_ptr<MuxInput>> inputs_;
+    MuxStatistics published_;
+    GstClockTime latency_ = 0;
+    std::optional<uint64_t> origin_ns_; /* running time of the first frame on a pad of its own */
+
+    SweepGate gate_;
+};
+
+} // namespace dff

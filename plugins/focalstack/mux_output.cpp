@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/mux_output.h"
+
+namespace dff {
+
+void MuxOutput::restart()
+{
+    gst_segment_init(&segment_, GST_FORMAT_TIME);
+    has_caps_ = false;
+    segment_due_ = true;
+    discont_ = true;
+}
+
+void MuxOutput::begin_own_stream()
+{
+    g_autofree gchar *id = g_strdup_printf("%s-%08x", GST_ELEMENT_NAME(element_), g_random_int());
+    gst_pad_push_event(source_, gst_event_new_stream_start(id));
+}
+
+void MuxOutput::set_segment(const GstSegment &segment)
+{
+    /* Where the input does not count in time, the stacks' times count from 0. */
+    if (segment.format == GST_FORMAT_TIME)
+        gst_segment_copy_into(&segment, &segment_);
+    else
+        gst_segment_init(&segment_, GST_FORMAT_TIME);
+    segment_due_ = true;
+    discont_ = true;
+}
+
+bool MuxOutput::set_shape(const GstFocalStackInfo &info)
+{
+    g_autoptr(GstCaps) caps = gst_focal_stack_info_to_caps(&info);
+    info_ = info;
+    has_caps_ = gst_pad_push_event(source_, gst_event_new_caps(caps));
+    return has_caps_;
+}
+
+void MuxOutput::send_due_segment()
+{
+    if (segment_due_)
+        gst_pad_push_event(source_, gst_event_new_segment(&segment_));
+    segment_due_ = false;
+}
+
+/* Frames without times are taken to come at the caps' rate from 0 on. */
+void MuxOutput::complete_time(GstBuffer *stack) const
+{
+    const gint numerator = GST_VIDEO_INFO_FPS_N(&info_.frame);
+    const gint denominator = GST_VIDEO_INFO_FPS_D(&info_.frame);
+    if (GST_BUFFER_PTS_IS_VALID(stack) || numerator == 0)
+        return;
+    const guint64 k = GST_BUFFER_OFFSET(stack);
+    const auto time_of = [&](guint64 stacks) {
+        return gst_util_uint64_scale(stacks, GST_SECOND * denominator, numerator);
+    };
+    GST_BUFFER_PTS(stack) = time_of(k);
+    GST_BUFFER_DURATION(stack) = time_of(k + 1) - time_of(k);
+}
+
+GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
+{
+    if (!outcome.stack) {
+        discont_ = true;
+        post_loss(outcome.time, statistics);
+        return GST_FLOW_OK;
+    }
+    complete_time(outcome.stack.get());
+    if (discont_)
+        GST_BUFFER_FLAG_SET(outcome.stack.get(), GST_BUFFER_FLAG_DISCONT);
+    discont_ = false;
+    send_due_segment();
+    return gst_pad_push(source_, outcome.stack.release());
+}
+
+bool MuxOutput::send_gap(GstEvent *gap)
+{
+    if (!has_caps_) {
+        gst_event_unref(gap);
+        return true;
+    }
+    send_due_segment();
+    return gst_pad_push_event(source_, gap);
+}
+
+void MuxOutput::post_loss(const TimeSpan &time, const MuxStatistics &statistics)
+{
+    const guint64 running_time = gst_segment_to_running_time(&segment_, GST_FORMAT_TIME, time.start);
+    const guint64 stream_time = gst_segment_to_stream_time(&segment_, GST_FORMAT_TIME, time.start);
+    GstMessage *message = gst_message_new_qos(GST_OBJECT(element_), FALSE, running_time, stream_time,
+                                              time.start, time.duration);
+    gst_message_set_qos_stats(message, GST_FORMAT_BUFFERS, statistics.stacks, statistics.dropped);
+    gst_element_post_message(element_, message);
+}
+
+} // namespace dff

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "focalstack/stack_maker.h"
+
+#include <gst/gst.h>
+
+namespace dff {
+
+/* The mux's source pad: sends caps, segment and stacks in their order, and tells the application of what was
+ * lost. Guarded by the mux's stream lock. */
+class MuxOutput {
+public:
+    MuxOutput(GstElement *element, GstPad *source) : element_(element), source_(source) {}
+
+    /* The stream begins anew: caps and segment are due before the next stack. */
+    void restart();
+
+    /* The mux's pads have no common stream: it has one of its own. */
+    void begin_own_stream();
+
+    void set_segment(const GstSegment &segment);
+    const GstSegment &segment() const { return segment_; }
+
+    /* Whether downstream takes stacks of this shape. */
+    bool set_shape(const GstFocalStackInfo &info);
+
+    /* Sends the stack, or tells of the loss. */
+    GstFlowReturn send(Outcome outcome, const MuxStatistics &statistics);
+
+    /* Goes downstream as soon as downstream can understand it; lost where nothing was sent yet. */
+    bool send_gap(GstEvent *gap);
+
+private:
+    void send_due_segment();
+    void complete_time(GstBuffer *stack) const;
+    void post_loss(const TimeSpan &time, const MuxStatistics &statistics);
+
+    GstElement *element_;
+    GstPad *source_;
+    GstFocalStackInfo info_{};
+    GstSegment segment_{};
+    bool has_caps_ = false;
+    bool segment_due_ = true;
+    bool discont_ = true;
+};
+
+} // namespace dff

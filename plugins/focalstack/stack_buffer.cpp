@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/stack_buffer.h"
+
+#include "focalstack/frame_verdict.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace dff {
+
+namespace {
+
+/* Kernels read 16 pixels at a time, a little over both ends of a stack. */
+constexpr gsize slack = 64;
+constexpr gsize page_mask = 4095;
+
+void copy_reference_times(GstBuffer *from, GstBuffer *to)
+{
+    gpointer state = nullptr;
+    while (GstMeta *meta =
+               gst_buffer_iterate_meta_filtered(from, &state, GST_REFERENCE_TIMESTAMP_META_API_TYPE)) {
+        const auto *time = reinterpret_cast<GstReferenceTimestampMeta *>(meta);
+        gst_buffer_add_reference_timestamp_meta(to, time->reference, time->timestamp, time->duration);
+    }
+}
+
+std::shared_ptr<GstBuffer> reference_times(GstBuffer *frame)
+{
+    if (!gst_buffer_get_reference_timestamp_meta(frame, nullptr))
+        return nullptr;
+    std::shared_ptr<GstBuffer> holder(gst_buffer_new(), BufferUnref());
+    copy_reference_times(frame, holder.get());
+    return holder;
+}
+
+} // namespace
+
+StackPool::StackPool(const GstFocalStackInfo &info) : info_(info), pool_(gst_buffer_pool_new())
+{
+    g_autoptr(GstCaps) caps = gst_focal_stack_info_to_caps(&info_);
+    GstAllocationParams params;
+    gst_allocation_params_init(&params);
+    params.flags = static_cast<GstMemoryFlags>(GST_MEMORY_FLAG_ZERO_PREFIXED | GST_MEMORY_FLAG_ZERO_PADDED);
+    params.align = page_mask;
+    params.prefix = slack;
+    params.padding = slack;
+
+    GstStructure *config = gst_buffer_pool_get_config(pool_);
+    gst_buffer_pool_config_set_params(config, caps, gst_focal_stack_info_get_size(&info_), 0, 0);
+    gst_buffer_pool_config_set_allocator(config, nullptr, &params);
+    gst_buffer_pool_set_config(pool_, config);
+    gst_buffer_pool_set_active(pool_, TRUE);
+}
+
+StackPool::~StackPool()
+{
+    gst_buffer_pool_set_active(pool_, FALSE);
+    gst_object_unref(pool_);
+}
+
+BufferPtr StackPool::acquire()
+{
+    GstBuffer *buffer = nullptr;
+    if (gst_buffer_pool_acquire_buffer(pool_, &buffer, nullptr) != GST_FLOW_OK)
+        return nullptr;
+    gst_focal_stack_info_add_video_metas(&info_, buffer);
+    return BufferPtr(buffer);
+}
+
+StackBuffer::StackBuffer(const GstFocalStackInfo &info, BufferPtr buffer)
+    : info_(info), buffer_(std::move(buffer)), planes_(info.planes)
+{
+    for (unsigned z = 0; z < info_.planes; z++) {
+        gst_focus_info_init(&planes_[z].focus);
+        planes_[z].focus.plane = z;
+        planes_[z].focus.planes = info_.planes;
+    }
+}
+
+void StackBuffer::put(unsigned plane, const PlaneFrame &frame)
+{
+    GstVideoFrame target;
+    if (gst_video_frame_map_id(&target, &info_.frame, buffer_.get(), static_cast<gint>(plane),
+                               GST_MAP_WRITE)) {
+        gst_video_frame_copy(&target, frame.picture);
+        gst_video_frame_unmap(&target);
+    }
+    planes_[plane] = {frame.focus, frame.time, reference_times(frame.buffer)};
+    planes_[plane].focus.plane = plane;
+    planes_[plane].focus.planes = info_.planes;
+}
+
+void StackBuffer::copy_picture(const StackBuffer &other, unsigned from, unsigned to)
+{
+    const gsize size = GST_VIDEO_INFO_SIZE(&info_.frame);
+    GstMapInfo source;
+    GstMapInfo target;
+    if (!gst_buffer_map(buffer_.get(), &target, GST_MAP_READWRITE))
+        return;
+    if (other.buffer_ == buffer_)
+        std::copy_n(target.data + from * size, size, target.data + to * size);
+    else if (gst_buffer_map(other.buffer_.get(), &source, GST_MAP_READ)) {
+        std::copy_n(source.data + from * size, size, target.data + to * size);
+        gst_buffer_unmap(other.buffer_.get(), &source);
+    }
+    gst_buffer_unmap(buffer_.get(), &target);
+}
+
+void StackBuffer::repeat(unsigned from, unsigned to, double power)
+{
+    copy_picture(*this, from, to);
+    planes_[to] = planes_[from];
+    planes_[to].focus.plane = to;
+    planes_[to].focus.power = power;
+}
+
+void StackBuffer::take_over(const StackBuffer &other, unsigned plane)
+{
+    copy_picture(other, plane, plane);
+    planes_[plane] = other.planes_[plane];
+}
+
+void StackBuffer::take_over(const StackBuffer &other)
+{
+    for (unsigned z = 0; z < info_.planes; z++)
+        take_over(other, z);
+}
+
+unsigned StackBuffer::first_of(uint64_t fresh) const
+{
+    /* GST_CLOCK_TIME_NONE is greater than every time. */
+    unsigned first = info_.planes;
+    for (unsigned z = 0; z < info_.planes; z++)
+        if ((fresh & plane_bit(z)) &&
+            (first == info_.planes || planes_[z].time.start < planes_[first].time.start))
+            first = z;
+    return first;
+}
+
+TimeSpan StackBuffer::span(uint64_t fresh) const
+{
+    const unsigned first = first_of(fresh);
+    if (first == info_.planes || !GST_CLOCK_TIME_IS_VALID(planes_[first].time.start))
+        return {};
+
+    const GstClockTime start = planes_[first].time.start;
+    GstClockTime end = start;
+    for (unsigned z = 0; z < info_.planes; z++) {
+        const TimeSpan &time = planes_[z].time;
+        if ((fresh & plane_bit(z)) && GST_CLOCK_TIME_IS_VALID(time.start))
+            end = std::max(end, time.start + (GST_CLOCK_TIME_IS_VALID(time.duration) ? time.duration : 0));
+    }
+    return {start, end > start ? end - start : GST_CLOCK_TIME_NONE};
+}
+
+BufferPtr StackBuffer::finish(uint64_t sequence, uint64_t filled)
+{
+    const uint64_t fresh = all_planes(info_.planes) & ~filled;
+    const TimeSpan time = span(fresh);
+    GstBuffer *stack = buffer_.get();
+    GST_BUFFER_PTS(stack) = time.start;
+    GST_BUFFER_DURATION(stack) = time.duration;
+    GST_BUFFER_OFFSET(stack) = sequence;
+
+    GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, sequence, info_.planes);
+    meta->complete = filled == 0;
+    meta->missing = filled;
+    meta->repeated = filled;
+    for (unsigned z = 0; z < info_.planes; z++)
+        gst_focal_stack_meta_set_focus(meta, z, &planes_[z].focus);
+
+    const unsigned first = first_of(fresh);
+    if (first < info_.planes && planes_[first].clocks)
+        copy_reference_times(planes_[first].clocks.get(), stack);
+    return BufferPtr(gst_buffer_ref(stack));
+}
+
+} // namespace dff

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "focalstack/frame_verdict.h"
+#include "focalstack/stack_buffer.h"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+
+namespace dff {
+
+/* What is done with a stack of which planes are missing. */
+enum class OnMissing { Drop, Hold, Repeat };
+
+enum class StackWindow { Sweep, Rolling };
+
+struct MuxStatistics {
+    uint64_t frames = 0;    /* came in */
+    uint64_t stacks = 0;    /* were sent */
+    uint64_t dropped = 0;   /* stacks that were not sent, for planes missing */
+    uint64_t lost = 0;      /* frames that never came */
+    uint64_t repeated = 0;  /* frames that came twice; the second one is not used */
+    uint64_t late = 0;      /* frames that came when their sweep was over; not used */
+    uint64_t reordered = 0; /* frames that came out of order and were put in their place */
+    uint64_t damaged = 0;   /* frames that could not be read; count as lost too */
+};
+
+/* A stack to send, or, where `stack` is empty, the time of a stack or frame that was lost. */
+struct Outcome {
+    BufferPtr stack;
+    TimeSpan time;
+};
+
+/* Frames in, stacks out: a strategy for each window. */
+class StackMaker {
+public:
+    /* Counts into `statistics`, and numbers the stacks by it; whoever makes frames counts them. */
+    static std::unique_ptr<StackMaker> create(StackWindow window, const GstFocalStackInfo &info,
+                                              OnMissing on_missing, unsigned allowance,
+                                              MuxStatistics &statistics);
+    virtual ~StackMaker() = default;
+
+    /* Frames of later sweeps that may come before the last one of a sweep that waits for it. */
+    static constexpr unsigned default_allowance = 2;
+
+    const GstFocalStackInfo &info() const { return pool_.info(); }
+
+    /* False if there is no memory for a stack. The focus says sweep and plane; plane is below info().planes.
+     */
+    virtual bool add(const PlaneFrame &frame) = 0;
+
+    /* The stream ends: what was begun is dropped or filled. */
+    virtual void finish() = 0;
+
+    std::optional<Outcome> next_outcome();
+
+protected:
+    StackMaker(const GstFocalStackInfo &info, OnMissing on_missing, MuxStatistics &statistics);
+
+    unsigned planes() const { return pool_.info().planes; }
+    void put(StackBuffer &stack, const PlaneFrame &frame);
+    void refuse(const PlaneFrame &frame, FrameVerdict verdict);
+    void drop_stack(TimeSpan time);
+    void send(StackBuffer &stack, uint64_t filled);
+
+    /* Puts the nearest plane of `fresh` into every other one. */
+    void fill_from_neighbours(StackBuffer &stack, uint64_t fresh) const;
+
+    StackPool pool_;
+    OnMissing on_missing_;
+    MuxStatistics &statistics_;
+
+private:
+    std::deque<Outcome> outcomes_;
+    std::array<double, longest_stack> powers_; /* of each plane when last seen, dioptres, or NAN */
+};
+
+} // namespace dff
