@@ -2,12 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "config.h"
 
+#include "focalstack/focalstackdemux.h"
 #include "focalstack/focalstackmux.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
     gboolean registered = FALSE;
     registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
+    registered |= GST_ELEMENT_REGISTER(focalstackdemux, plugin);
     return registered;
 }
 

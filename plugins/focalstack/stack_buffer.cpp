@@ -15,16 +15,6 @@ namespace {
 constexpr gsize slack = 64;
 constexpr gsize page_mask = 4095;
 
-void copy_reference_times(GstBuffer *from, GstBuffer *to)
-{
-    gpointer state = nullptr;
-    while (GstMeta *meta =
-               gst_buffer_iterate_meta_filtered(from, &state, GST_REFERENCE_TIMESTAMP_META_API_TYPE)) {
-        const auto *time = reinterpret_cast<GstReferenceTimestampMeta *>(meta);
-        gst_buffer_add_reference_timestamp_meta(to, time->reference, time->timestamp, time->duration);
-    }
-}
-
 std::shared_ptr<GstBuffer> reference_times(GstBuffer *frame)
 {
     if (!gst_buffer_get_reference_timestamp_meta(frame, nullptr))
@@ -35,6 +25,16 @@ std::shared_ptr<GstBuffer> reference_times(GstBuffer *frame)
 }
 
 } // namespace
+
+void copy_reference_times(GstBuffer *from, GstBuffer *to)
+{
+    gpointer state = nullptr;
+    while (GstMeta *meta =
+               gst_buffer_iterate_meta_filtered(from, &state, GST_REFERENCE_TIMESTAMP_META_API_TYPE)) {
+        const auto *time = reinterpret_cast<GstReferenceTimestampMeta *>(meta);
+        gst_buffer_add_reference_timestamp_meta(to, time->reference, time->timestamp, time->duration);
+    }
+}
 
 StackPool::StackPool(const GstFocalStackInfo &info) : info_(info), pool_(gst_buffer_pool_new())
 {

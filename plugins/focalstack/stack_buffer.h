@@ -15,6 +15,9 @@ struct BufferUnref {
 };
 using BufferPtr = std::unique_ptr<GstBuffer, BufferUnref>;
 
+/* Adds the GstReferenceTimestampMetas of one buffer to another. */
+void copy_reference_times(GstBuffer *from, GstBuffer *to);
+
 /* Stacks of one shape: each in one memory of its own, with 64 bytes of slack at both ends and one
  * GstVideoMeta a plane. Without an upper limit, so that nobody downstream who keeps stacks can stop the
  * stream; what comes back is used again. A stack may outlive its pool. */
