@@ -32,7 +32,8 @@ Color Material::color(const cv::Vec3d &point) const
     const double around = std::atan2(p[2], p[0]) / (2.0 * std::numbers::pi) + 0.5;
     switch (pattern) {
     case Pattern::Marble:
-        return blend(first, second, 0.5 + 0.5 * std::sin(2.0 * std::numbers::pi * (p[0] + p[1] + 1.5 * noise))) *
+        return blend(first, second,
+                     0.5 + 0.5 * std::sin(2.0 * std::numbers::pi * (p[0] + p[1] + 1.5 * noise))) *
                shade;
     case Pattern::Segments:
         return (odd(std::floor(8.0 * around)) ? first : second) * shade;

@@ -62,7 +62,12 @@ const Color violet{0.52, 0.25, 0.72};
 std::vector<Shape> arrangement()
 {
     return {
-        {Wall{{0.0, ground_height, 0.0}, {0.0, -1.0, 0.0}}, Pattern::Checks, {0.86, 0.78, 0.62}, {0.5, 0.6, 0.55}, 0.22, 0.0},
+        {Wall{{0.0, ground_height, 0.0}, {0.0, -1.0, 0.0}},
+         Pattern::Checks,
+         {0.86, 0.78, 0.62},
+         {0.5, 0.6, 0.55},
+         0.22,
+         0.0},
         {Wall{{0.0, 0.0, wall_distance}, {0.0, 0.0, -1.0}}, Pattern::Rainbow, white, white, 1.6, 0.0},
         {ball(-0.27, 1.32, 0.13), Pattern::Marble, blue, white, 0.16, 0.5},
         {ball(0.33, 1.45, 0.11), Pattern::Plain, red, red, 1.0, 0.9},
@@ -139,7 +144,8 @@ private:
         const double facing = std::max(0.0, hit.normal.dot(lamp));
         const double light = in_shadow({point + 1e-4 * hit.normal, lamp}) ? 0.0 : 1.0;
         const cv::Vec3d halfway = cv::normalize(lamp - cv::normalize(ray.direction));
-        const double highlight = thing.material.gloss * std::pow(std::max(0.0, hit.normal.dot(halfway)), 40.0);
+        const double highlight =
+            thing.material.gloss * std::pow(std::max(0.0, hit.normal.dot(halfway)), 40.0);
         const Color color = thing.material.color(local_point(thing.solid, point));
         const double sky = 0.36 - 0.1 * hit.normal[1];
         return color * (sky + 0.72 * facing * light) + Color::all(0.8 * highlight * light);

@@ -20,8 +20,9 @@ Scene make_slant(cv::Size size, uint64_t seed)
             for (int x = 0; x < size.width; x++) {
                 const cv::Vec3d point(x / coarsest, y / coarsest, 0.5);
                 scene.color(y, x) = to_pixel(rainbow(hue(point / 4.0)) * (0.15 + 0.8 * light(point)));
-                scene.depth(y, x) =
-                    size.height > 1 ? 1.0F - static_cast<float>(y) / static_cast<float>(size.height - 1) : 0.0F;
+                scene.depth(y, x) = size.height > 1
+                                        ? 1.0F - static_cast<float>(y) / static_cast<float>(size.height - 1)
+                                        : 0.0F;
             }
     });
     return scene;

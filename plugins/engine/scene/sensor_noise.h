@@ -9,7 +9,8 @@
 
 namespace dff {
 
-/* Noise of a sensor, Poisson (photons) and Gaussian (read-out): variance = gain I + read^2, in 8-bit values. */
+/* Noise of a sensor, Poisson (photons) and Gaussian (read-out): variance = gain I + read^2, in 8-bit values.
+ */
 struct SensorNoise {
     double gain = 0.0;
     double read = 0.0;

@@ -52,7 +52,8 @@ using Solid = std::variant<Ball, Block, Pillar, Wall>;
 /* The first point of the solid in front of the ray's origin. */
 std::optional<Hit> intersect(const Solid &solid, const Ray &ray);
 
-/* A point of the surface as seen from the solid itself: relative to its centre and, for a block, its edges. */
+/* A point of the surface as seen from the solid itself: relative to its centre and, for a block, its edges.
+ */
 cv::Vec3d local_point(const Solid &solid, const cv::Vec3d &point);
 
 } // namespace dff

@@ -32,9 +32,8 @@ cv::Mat4f blur_patch(const LayerPatch &patch, const cv::Mat1f &kernel)
     for (int y = 0; y < premultiplied.rows; y++)
         for (int x = 0; x < premultiplied.cols; x++) {
             const cv::Vec3b &color = patch.color(y, x);
-            premultiplied(y, x) = patch.reach(y, x) <= reach
-                                      ? cv::Vec4f(color[0], color[1], color[2], 1.0F)
-                                      : cv::Vec4f();
+            premultiplied(y, x) =
+                patch.reach(y, x) <= reach ? cv::Vec4f(color[0], color[1], color[2], 1.0F) : cv::Vec4f();
         }
     if (kernel.empty())
         return premultiplied;

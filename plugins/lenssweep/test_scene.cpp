@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "test_scene.h"
+
+#include "engine/scene/scene_files.h"
+#include "engine/scene/scene_shapes.h"
+#include "engine/scene/scene_slant.h"
+
+#include <stdexcept>
+
+namespace {
+
+dff::SensorNoise parse_noise(const std::string &text)
+{
+    const auto noise = dff::SensorNoise::parse(text);
+    if (!noise)
+        throw std::invalid_argument("noise \"" + text +
+                                    "\" is not known; use none, mild, moderate, strong or GAIN,READ "
+                                    "(two numbers from 0 to 255, such as 0.2,2)");
+    return *noise;
+}
+
+} // namespace
+
+GType gst_lens_sweep_test_scene_get_type()
+{
+    static const GEnumValue values[] = {
+        {GST_LENS_SWEEP_TEST_SCENE_SHAPES, "Balls, blocks and pillars on a slanted ground", "shapes"},
+        {GST_LENS_SWEEP_TEST_SCENE_SLANT, "One slanted textured plane", "slant"},
+        {GST_LENS_SWEEP_TEST_SCENE_FILES, "The files of image and depth-map", "files"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstLensSweepTestScene", values);
+    return type;
+}
+
+void TestScene::check() const
+{
+    parse_noise(noise);
+    if (scene == GST_LENS_SWEEP_TEST_SCENE_FILES && (image.empty() || depth_map.empty()))
+        throw std::invalid_argument(
+            "scene=files needs the properties image and depth-map: the paths of a sharp "
+            "picture and of its disparity map");
+}
+
+std::optional<cv::Size> TestScene::natural_size() const
+{
+    if (scene != GST_LENS_SWEEP_TEST_SCENE_FILES)
+        return std::nullopt;
+    return dff::image_size(image);
+}
+
+dff::Scene TestScene::make(cv::Size size, const std::stop_token &stop) const
+{
+    switch (scene) {
+    case GST_LENS_SWEEP_TEST_SCENE_SLANT:
+        return dff::make_slant(size, seed);
+    case GST_LENS_SWEEP_TEST_SCENE_FILES:
+        return dff::resize_scene(dff::load_scene(image, depth_map), size);
+    default:
+        return dff::make_shapes(size, seed, stop);
+    }
+}
+
+dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
+                                   const std::stop_token &stop) const
+{
+    check();
+    const dff::SweptCameraSettings settings{plan, blur_step, parse_noise(noise), breathing, jitter, seed};
+    return {make(size, stop), settings, stop};
+}

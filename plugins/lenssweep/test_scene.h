@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/scene/swept_camera.h"
+
+#include <glib-object.h>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+enum GstLensSweepTestScene {
+    GST_LENS_SWEEP_TEST_SCENE_SHAPES,
+    GST_LENS_SWEEP_TEST_SCENE_SLANT,
+    GST_LENS_SWEEP_TEST_SCENE_FILES,
+};
+
+#define GST_TYPE_LENS_SWEEP_TEST_SCENE (gst_lens_sweep_test_scene_get_type())
+GType gst_lens_sweep_test_scene_get_type();
+
+/* What stands before the simulated camera, and how it sees it: the properties of the same names. */
+struct TestScene {
+    GstLensSweepTestScene scene = GST_LENS_SWEEP_TEST_SCENE_SHAPES;
+    std::string image;
+    std::string depth_map;
+    gdouble blur_step = 2.0;
+    std::string noise = "none";
+    gdouble breathing = 0.0;
+    gdouble jitter = 0.0;
+    guint64 seed = 0;
+
+    /* Throws std::invalid_argument or std::runtime_error, with a message for the user, if a property cannot
+     * be used. Reads no file. */
+    void check() const;
+
+    /* The size of the image, or nothing for scenes that are made at any size; throws if it cannot be read. */
+    std::optional<cv::Size> natural_size() const;
+
+    /* Throws like check(), and if a file cannot be read. Unusable where `stop` was requested. */
+    dff::SweptCamera camera(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const;
+
+private:
+    dff::Scene make(cv::Size size, const std::stop_token &stop) const;
+};
