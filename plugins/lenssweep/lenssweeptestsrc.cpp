@@ -223,7 +223,7 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     LivePacer &pacer = self->state->pacer;
-    begin_stream(self, self->src_pad, nullptr, gst_util_group_id_next());
+    begin_stream(self, self->src_pad, "src", gst_util_group_id_next());
     if (stream.is_live() && !pacer.wait_until_playing())
         return GST_FLOW_FLUSHING;
     if (eos_is_due(self))
