@@ -1,0 +1,257 @@
+-- SPDX-License-Identifier: LGPL-2.1-or-later
+-- Copyright (C) 2026 the gst-plugins-dff authors
+--
+-- The table of planes: a staged copy that the host writes, and two banks of which the sequencer reads one. A commit
+-- copies the staged table to the other bank and checks it on the way; the banks are exchanged between two sweeps.
+
+library ieee;
+  use ieee.std_logic_1164.all;
+  use ieee.numeric_std.all;
+
+library work;
+  use work.timing_pkg.all;
+
+entity plane_table is
+  generic (
+    CLOCK_HZ    : positive := 125_000_000;
+    TICK_HZ     : positive := 1_000_000;
+    LENS_BUS_HZ : positive := 400_000
+  );
+  port (
+    clk           : in    std_ulogic;
+    reset         : in    std_ulogic;
+    -- The staged table; host_q is valid one cycle after host_read
+    host_plane    : in    unsigned(5 downto 0);
+    host_column   : in    unsigned(1 downto 0);
+    host_write    : in    std_ulogic;
+    host_data     : in    std_ulogic_vector(15 downto 0);
+    host_read     : in    std_ulogic;
+    host_q        : out   std_ulogic_vector(15 downto 0);
+    -- The committed words that the check needs, valid two cycles after commit
+    commit        : in    std_ulogic;
+    planes        : in    unsigned(15 downto 0);
+    period        : in    unsigned(15 downto 0);
+    exposure      : in    unsigned(15 downto 0);
+    trigger_width : in    unsigned(15 downto 0);
+    lead          : in    unsigned(7 downto 0);
+    trail         : in    unsigned(7 downto 0);
+    -- A new trigger polarity must not make an edge in a sweep: it waits for idle
+    new_level     : in    std_ulogic;
+    pending       : out   std_ulogic;
+    -- One cycle each
+    apply         : out   std_ulogic;
+    bad_planes    : out   std_ulogic;
+    bad_timing    : out   std_ulogic;
+    bad_code      : out   std_ulogic;
+    bad_plane     : out   unsigned(5 downto 0);
+    -- Sequencer; q is valid one cycle after read
+    idle          : in    std_ulogic;
+    boundary      : in    std_ulogic;
+    plane         : in    unsigned(5 downto 0);
+    column        : in    unsigned(1 downto 0);
+    read          : in    std_ulogic;
+    q             : out   std_ulogic_vector(15 downto 0)
+  );
+end entity plane_table;
+
+architecture rtl of plane_table is
+
+  constant LENS_GAP    : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 4);
+  constant LENS_STAGED : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 2);
+  constant MAX_CODE    : positive := 1023;
+
+  type memory_t is array (natural range <>) of std_ulogic_vector(15 downto 0);
+
+  signal staged : memory_t(0 to 255) := (others => (others => '0'));
+  signal banks  : memory_t(0 to 511) := (others => (others => '0'));
+
+  type state_t is (idle_state, settings_state, copy_state, verdict_state);
+
+  signal state : state_t;
+  signal step  : natural range 0 to 5;
+  -- Word in hand of the copy: plane and column
+  signal address     : unsigned(7 downto 0);
+  signal host_word   : std_ulogic_vector(15 downto 0);
+  signal staged_address : natural range 0 to 255;
+  signal staged_enable  : std_ulogic;
+  signal copying        : std_ulogic;
+
+  -- The word that has left the memory in a copy
+  signal copied         : std_ulogic;
+  signal copied_address : unsigned(7 downto 0);
+
+  signal bank    : std_ulogic;
+  signal gap     : unsigned(16 downto 0);
+  signal delay   : unsigned(17 downto 0);
+  signal settle  : unsigned(17 downto 0);
+  signal check   : std_ulogic_vector(1 to 2);
+  -- The sum of a plane's times is ready one cycle after its last word, the verdict one later
+  signal settled_plane : unsigned(5 downto 0);
+  signal checked_plane : unsigned(5 downto 0);
+  signal needed  : unsigned(17 downto 0);
+  signal refused : std_ulogic;
+
+begin
+
+  gap <= resize(period, 17) - resize(exposure, 17);
+
+  copying        <= '1' when state = copy_state else
+                    '0';
+  staged_address <= to_integer(address) when copying = '1' else
+                    to_integer(host_plane & host_column);
+  staged_enable  <= copying or host_read;
+
+  host_q <= host_word;
+
+  staged_memory : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      if (host_write = '1') then
+        staged(to_integer(host_plane & host_column)) <= host_data;
+      end if;
+      if (staged_enable = '1') then
+        host_word <= staged(staged_address);
+      end if;
+    end if;
+
+  end process staged_memory;
+
+  bank_memory : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      if (copied = '1') then
+        banks(to_integer((not bank) & copied_address)) <= host_word;
+      end if;
+      if (read = '1') then
+        q <= banks(to_integer(bank & plane & column));
+      end if;
+    end if;
+
+  end process bank_memory;
+
+  check_and_copy : process (clk) is
+
+    procedure refuse (signal reason : out std_ulogic; at_plane : unsigned) is
+    begin
+
+      if (refused = '0') then
+        reason    <= '1';
+        bad_plane <= at_plane;
+      end if;
+      refused <= '1';
+
+    end procedure refuse;
+
+  begin
+
+    if rising_edge(clk) then
+      apply       <= '0';
+      bad_planes  <= '0';
+      bad_timing  <= '0';
+      bad_code    <= '0';
+      copied      <= copying;
+
+      case state is
+
+        when idle_state =>
+
+          step <= 0;
+
+        when settings_state =>
+
+          step <= step + 1;
+          if (step = 4) then
+            step  <= 0;
+            state <= copy_state;
+            if (planes < 2 or planes > 64) then
+              refuse(bad_planes, to_unsigned(0, 6));
+              state <= idle_state;
+            elsif (period <= exposure or exposure < LENS_STAGED or trigger_width = 0 or trigger_width > exposure
+                   or resize(trigger_width, 17) + lead <= trail) then
+              refuse(bad_timing, to_unsigned(0, 6));
+              state <= idle_state;
+            end if;
+          end if;
+
+        when copy_state =>
+
+          copied_address <= address;
+          address        <= address + 1;
+          if (address = shift_left(resize(planes, 9), 2) - 1) then
+            state <= verdict_state;
+          end if;
+
+        -- The last word leaves the memory and passes the check
+        when verdict_state =>
+
+          step <= step + 1;
+          if (step = 4) then
+            step    <= 0;
+            state   <= idle_state;
+            pending <= not refused;
+          end if;
+
+      end case;
+
+      -- Check of the word that leaves the memory
+      check(1) <= '0';
+      check(2) <= check(1);
+      if (copied = '1') then
+        if (copied_address(0) = '0' and unsigned(host_word) > MAX_CODE) then
+          refuse(bad_code, copied_address(7 downto 2));
+        end if;
+        if (copied_address(1 downto 0) = "01") then
+          delay <= resize(unsigned(host_word), 18) + LENS_GAP;
+        end if;
+        if (copied_address(1 downto 0) = "11") then
+          check(1)      <= '1';
+          settled_plane <= copied_address(7 downto 2);
+          settle   <= resize(unsigned(host_word), 18);
+          if (unsigned(host_word) < lead) then
+            settle <= resize(lead, 18);
+          end if;
+        end if;
+      end if;
+      if (check(1) = '1') then
+        needed        <= delay + settle;
+        checked_plane <= settled_plane;
+      end if;
+      if (check(2) = '1' and needed > gap) then
+        refuse(bad_timing, checked_plane);
+      end if;
+
+      if (pending = '1' and state = idle_state and (idle = '1' or (boundary = '1' and new_level = '0'))) then
+        pending <= '0';
+        apply   <= '1';
+        bank    <= not bank;
+      end if;
+
+      if (commit = '1') then
+        state       <= settings_state;
+        address     <= (others => '0');
+        step        <= 0;
+        pending     <= '0';
+        apply       <= '0';
+        bank        <= bank;
+        refused     <= '0';
+        copied <= '0';
+      end if;
+
+      if (reset = '1') then
+        state       <= idle_state;
+        step        <= 0;
+        pending     <= '0';
+        refused     <= '0';
+        bank        <= '0';
+        apply <= '0';
+        address <= (others => '0');
+        check       <= "00";
+        copied <= '0';
+      end if;
+    end if;
+
+  end process check_and_copy;
+
+end architecture rtl;

@@ -1,0 +1,382 @@
+-- SPDX-License-Identifier: LGPL-2.1-or-later
+-- Copyright (C) 2026 the gst-plugins-dff authors
+--
+-- The words that the host sees. Keeps the staged words in three copies: as written, as committed and checked, and in
+-- use; collects the errors; counts sweeps and frames.
+
+library ieee;
+  use ieee.std_logic_1164.all;
+  use ieee.numeric_std.all;
+
+library work;
+  use work.sweep_registers_pkg.all;
+  use work.timing_pkg.all;
+
+entity register_file is
+  generic (
+    CLOCK_HZ    : positive := 125_000_000;
+    TICK_HZ     : positive := 1_000_000;
+    LENS_BUS_HZ : positive := 400_000
+  );
+  port (
+    clk         : in    std_ulogic;
+    reset       : in    std_ulogic;
+    -- Host
+    word_number : in    unsigned(6 downto 0);
+    writable    : out   std_ulogic;
+    read        : in    std_ulogic;
+    read_data   : out   std_ulogic_vector(15 downto 0);
+    write       : in    std_ulogic;
+    write_data  : in    std_ulogic_vector(15 downto 0);
+    -- Table of planes: the row shown to the host, and the commit
+    table_plane  : out   unsigned(5 downto 0);
+    table_column : out   unsigned(1 downto 0);
+    table_write  : out   std_ulogic;
+    table_data   : out   std_ulogic_vector(15 downto 0);
+    table_read   : out   std_ulogic;
+    -- One cycle after table_read
+    table_q      : in    std_ulogic_vector(15 downto 0);
+    commit       : out   std_ulogic;
+    pending      : in    std_ulogic;
+    apply        : in    std_ulogic;
+    -- Committed words, for the check
+    checked_planes      : out   unsigned(15 downto 0);
+    checked_period      : out   unsigned(15 downto 0);
+    checked_exposure    : out   unsigned(15 downto 0);
+    checked_width       : out   unsigned(15 downto 0);
+    checked_lead        : out   unsigned(7 downto 0);
+    checked_trail       : out   unsigned(7 downto 0);
+    checked_new_level   : out   std_ulogic;
+    -- Words in use
+    planes              : out   unsigned(6 downto 0);
+    triangle            : out   std_ulogic;
+    trigger_active_low  : out   std_ulogic;
+    period              : out   unsigned(15 downto 0);
+    exposure            : out   unsigned(15 downto 0);
+    flyback             : out   unsigned(15 downto 0);
+    trigger_width       : out   unsigned(15 downto 0);
+    lead                : out   unsigned(7 downto 0);
+    opto_on             : out   unsigned(7 downto 0);
+    opto_off            : out   unsigned(7 downto 0);
+    lens_address        : out   std_ulogic_vector(6 downto 0);
+    lens_start          : out   std_ulogic_vector(15 downto 0);
+    lens_stage          : out   std_ulogic_vector(15 downto 0);
+    lens_commit         : out   std_ulogic_vector(15 downto 0);
+    -- Sequencer
+    run         : in    std_ulogic;
+    go          : out   std_ulogic;
+    busy        : in    std_ulogic;
+    downward    : in    std_ulogic;
+    plane       : in    unsigned(5 downto 0);
+    sweep_begun : in    std_ulogic;
+    frame_begun : in    std_ulogic;
+    -- Faults: one bit for each bit of the word `error`
+    sweep_faults : in    std_ulogic_vector(4 downto 0);
+    table_faults : in    std_ulogic_vector(2 downto 0);
+    table_fault_plane : in    unsigned(5 downto 0);
+    error       : out   std_ulogic
+  );
+end entity register_file;
+
+architecture rtl of register_file is
+
+  constant LENS_GAP   : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 4);
+  constant LENS_STAGED : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 2);
+
+  subtype staged_t is natural range WORD_PLANES to WORD_LENS_COMMIT;
+
+  signal staged       : words_t(staged_t);
+  signal checked      : words_t(staged_t);
+  signal active       : words_t(staged_t);
+  signal control      : word_t;
+  signal selected     : unsigned(5 downto 0);
+  signal errors       : std_ulogic_vector(7 downto 0);
+  signal raised       : std_ulogic_vector(7 downto 0);
+  signal error_at     : unsigned(5 downto 0);
+  signal table_valid  : std_ulogic;
+  signal sweeps       : unsigned(31 downto 0);
+  signal frames       : unsigned(31 downto 0);
+  signal latched_high : std_ulogic_vector(15 downto 0);
+  signal status       : word_t;
+  signal checked_level    : std_ulogic;
+  signal checked_opto_on  : unsigned(7 downto 0);
+  signal checked_opto_off : unsigned(7 downto 0);
+  signal number       : natural range 0 to 127;
+  signal selection    : word_t;
+  signal read_shift   : std_ulogic_vector(1 to 2);
+
+  function is_row (number : natural) return boolean is
+  begin
+
+    return number >= WORD_PLANE_CODE_A and number <= WORD_PLANE_SETTLE_US;
+
+  end function is_row;
+
+begin
+
+  error <= '0' when errors = x"00" else '1';
+
+  planes             <= unsigned(active(WORD_PLANES)(6 downto 0));
+  triangle           <= active(WORD_SHAPE)(SHAPE_TRIANGLE);
+  trigger_active_low <= active(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
+  period             <= unsigned(active(WORD_PERIOD_US));
+  exposure           <= unsigned(active(WORD_EXPOSURE_US));
+  flyback            <= unsigned(active(WORD_FLYBACK_US));
+  trigger_width      <= unsigned(active(WORD_TRIGGER_WIDTH_US));
+  opto_on            <= unsigned(active(WORD_OPTO_ON_US)(opto_on_us_value_t));
+  opto_off           <= unsigned(active(WORD_OPTO_OFF_US)(opto_off_us_value_t));
+  lens_address       <= active(WORD_LENS_ADDRESS)(lens_address_value_t);
+  lens_start         <= active(WORD_LENS_START);
+  lens_stage         <= active(WORD_LENS_STAGE);
+  lens_commit        <= active(WORD_LENS_COMMIT);
+
+  checked_planes   <= unsigned(checked(WORD_PLANES));
+  checked_period   <= unsigned(checked(WORD_PERIOD_US));
+  checked_exposure <= unsigned(checked(WORD_EXPOSURE_US));
+  checked_width    <= unsigned(checked(WORD_TRIGGER_WIDTH_US));
+
+  table_plane  <= selected;
+  table_column <= to_unsigned(number - WORD_PLANE_CODE_A, 2) when is_row(number) else
+                  "00";
+
+  status <=
+  (
+    STATUS_BUSY           => busy,
+    STATUS_TABLE_VALID    => table_valid,
+    STATUS_COMMIT_PENDING => pending,
+    STATUS_DOWNWARD       => downward,
+    STATUS_RUN            => run,
+    STATUS_FAILED         => error,
+    6                     => plane(0),
+    7                     => plane(1),
+    8                     => plane(2),
+    9                     => plane(3),
+    10                    => plane(4),
+    11                    => plane(5),
+    others                => '0'
+  );
+
+  number <= to_integer(word_number);
+
+  host_writes : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      commit      <= '0';
+      table_write <= '0';
+
+      writable <= '0';
+      if (number < WORD_COUNT) then
+        if (WRITE_MASKS(number) /= x"0000") then
+          writable <= '1';
+        end if;
+      end if;
+
+      if (write = '1') then
+        if (number >= staged_t'low and number <= staged_t'high) then
+          staged(number) <= write_data and WRITE_MASKS(number);
+        elsif (number = WORD_CONTROL) then
+          control <= write_data and WRITE_MASKS(WORD_CONTROL);
+        elsif (number = WORD_COMMIT) then
+          commit <= write_data(COMMIT_COMMIT);
+        elsif (number = WORD_PLANE_SELECT) then
+          selected <= unsigned(write_data(plane_select_plane_t));
+        elsif (is_row(number)) then
+          table_write <= '1';
+          table_data  <= write_data;
+        end if;
+      end if;
+
+      if (commit = '1') then
+        checked <= staged;
+      end if;
+      if (apply = '1') then
+        active      <= checked;
+        table_valid <= '1';
+      end if;
+
+      if (reset = '1') then
+        for index in staged_t loop
+          staged(index)  <= DEFAULTS(index);
+          checked(index) <= DEFAULTS(index);
+          active(index)  <= DEFAULTS(index);
+        end loop;
+        control     <= DEFAULTS(WORD_CONTROL);
+        commit <= '0';
+        table_write <= '0';
+        selected    <= (others => '0');
+        table_valid <= '0';
+      end if;
+    end if;
+
+  end process host_writes;
+
+  lead <= leading_delay(trigger_active_low, opto_on, opto_off);
+
+  checked_level     <= checked(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
+  checked_opto_on   <= unsigned(checked(WORD_OPTO_ON_US)(opto_on_us_value_t));
+  checked_opto_off  <= unsigned(checked(WORD_OPTO_OFF_US)(opto_off_us_value_t));
+  checked_lead      <= leading_delay(checked_level, checked_opto_on, checked_opto_off);
+  checked_trail     <= trailing_delay(checked_level, checked_opto_on, checked_opto_off);
+  checked_new_level <= checked_level xor trigger_active_low;
+
+  gate : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      go <= control(CONTROL_ENABLE) and (run or not control(CONTROL_GATED)) and table_valid and not error;
+      if (reset = '1') then
+        go <= '0';
+      end if;
+    end if;
+
+  end process gate;
+
+  raised <= table_faults & sweep_faults;
+
+  collect_errors : process (clk) is
+
+    variable kept   : std_ulogic_vector(7 downto 0);
+
+  begin
+
+    if rising_edge(clk) then
+      kept := errors;
+      if (write = '1' and number = WORD_ERROR) then
+        kept   := errors and not write_data(7 downto 0);
+        errors <= kept;
+      end if;
+
+      if (raised /= x"00") then
+        errors <= kept or raised;
+        if (kept = x"00") then
+          if (sweep_faults /= "00000") then
+            error_at <= plane;
+          else
+            error_at <= table_fault_plane;
+          end if;
+        end if;
+      end if;
+
+      if (reset = '1') then
+        errors   <= (others => '0');
+        error_at <= (others => '0');
+      end if;
+    end if;
+
+  end process collect_errors;
+
+  count : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      if (sweep_begun = '1') then
+        sweeps <= sweeps + 1;
+      end if;
+      if (frame_begun = '1') then
+        frames <= frames + 1;
+      end if;
+      if (reset = '1') then
+        sweeps <= (others => '0');
+        frames <= (others => '0');
+      end if;
+    end if;
+
+  end process count;
+
+  -- The word that the host reads
+  select_word : process (all) is
+  begin
+
+    case number is
+
+      when WORD_IDENTITY | WORD_VERSION =>
+
+        selection <= DEFAULTS(number);
+
+      when WORD_CONTROL =>
+
+        selection <= control;
+
+      when WORD_STATUS =>
+
+        selection <= status;
+
+      when WORD_ERROR =>
+
+        selection <= x"00" & errors;
+
+      when WORD_ERROR_PLANE =>
+
+        selection <= std_ulogic_vector(resize(error_at, 16));
+
+      when WORD_SWEEP_COUNT_LOW =>
+
+        selection <= std_ulogic_vector(sweeps(15 downto 0));
+
+      when WORD_FRAME_COUNT_LOW =>
+
+        selection <= std_ulogic_vector(frames(15 downto 0));
+
+      when WORD_SWEEP_COUNT_HIGH | WORD_FRAME_COUNT_HIGH =>
+
+        selection <= latched_high;
+
+      when WORD_LENS_GAP_US =>
+
+        selection <= std_ulogic_vector(to_unsigned(LENS_GAP, 16));
+
+      when WORD_LENS_STAGE_US =>
+
+        selection <= std_ulogic_vector(to_unsigned(LENS_STAGED, 16));
+
+      when WORD_PLANES to WORD_LENS_COMMIT =>
+
+        selection <= staged(number);
+
+      when WORD_PLANE_SELECT =>
+
+        selection <= std_ulogic_vector(resize(selected, 16));
+
+      when WORD_PLANE_CODE_A | WORD_PLANE_DELAY_US | WORD_PLANE_CODE_B | WORD_PLANE_SETTLE_US =>
+
+        selection <= table_q;
+
+      when WORD_COMMIT =>
+
+        selection <= x"0000";
+
+      when others =>
+
+        selection <= x"FFFF";
+
+    end case;
+
+  end process select_word;
+
+  host_reads : process (clk) is
+  begin
+
+    if rising_edge(clk) then
+      read_shift <= read & read_shift(1);
+      table_read <= read;
+      if (read_shift(2) = '1') then
+        read_data <= selection;
+      end if;
+
+      if (read = '1' and number = WORD_SWEEP_COUNT_LOW) then
+        latched_high <= std_ulogic_vector(sweeps(31 downto 16));
+      elsif (read = '1' and number = WORD_FRAME_COUNT_LOW) then
+        latched_high <= std_ulogic_vector(frames(31 downto 16));
+      end if;
+
+      if (reset = '1') then
+        read_shift   <= "00";
+        table_read   <= '0';
+        latched_high <= (others => '0');
+      end if;
+    end if;
+
+  end process host_reads;
+
+end architecture rtl;

@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""Runs everything there is to check in fpga/ and prints `N passed, N failed`. Started by run.sh, in its environment.
+
+--only NAME        only benches and checks whose name contains NAME
+--all-mutations    break every line listed in mutations.toml, not one for each entity
+"""
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+import xml.etree.ElementTree
+from pathlib import Path
+
+from cocotb_tools.runner import get_runner
+
+TEST = Path(__file__).resolve().parent
+FPGA = TEST.parent
+RTL = FPGA / "rtl"
+BUILD = Path(os.environ.get("FPGA_BUILD", FPGA.parent / "build" / "fpga"))
+COVERAGE = BUILD / "coverage.jsonl"
+FAST = {"CLOCK_HZ": 8_000_000}
+REAL = {"CLOCK_HZ": 125_000_000}
+SCALED = {"CLOCK_HZ": 8_000_000, "SCALE": 2}
+STANDARD = "--std=08"
+# A bench that takes longer hangs
+LIMIT_S = 240
+
+
+class Bench:
+    """One simulation: a toplevel with its generics, and the Python module of its tests."""
+
+    def __init__(self, module, toplevel, generics, name=None, **environment):
+        self.module, self.toplevel, self.generics = module, toplevel, generics
+        self.name = name or module.removeprefix("test_")
+        self.environment = {f"BENCH_{key}": str(value) for key, value in environment.items()}
+        for key in ("CLOCK_HZ", "SCALE"):
+            if key in generics:
+                self.environment[f"BENCH_{key}"] = str(generics[key])
+
+
+BENCHES = [
+    Bench("test_synchronizer", "synchronizer", REAL),
+    Bench("test_trigger_output", "trigger_output", FAST),
+    Bench("test_i2c_master", "i2c_master", FAST | {"INPUT_CYCLES": 3}),
+    Bench("test_i2c_slave", "i2c_slave", FAST),
+    Bench("test_register_file", "register_file", FAST),
+    Bench("test_plane_table", "plane_table", FAST),
+    Bench("test_sweep_sequencer", "sweep_sequencer", FAST),
+    Bench("test_lens_sweep_top", "lens_sweep_bench", SCALED),
+    Bench("test_sweep_exact", "lens_sweep_bench", FAST, "one_real_sweep"),
+    Bench("test_sweep_exact", "lens_sweep_bench", REAL, "one_plane_125_mhz", ONE_PLANE=1,
+          TESTS="one_plane_at_the_real_clock"),
+    Bench("test_contract", "lens_sweep_bench", SCALED),
+    Bench("test_sweep_exact", "lens_sweep_bench", SCALED, "hundred_sweeps", SWEEPS=100),
+]
+
+
+def sources(rtl):
+    """Files of sources.txt, in order, then the harness."""
+    lines = (FPGA / "sources.txt").read_text(encoding="utf-8").splitlines()
+    files = [line.split()[1] for line in lines if line and not line.startswith("#")]
+    return [rtl / Path(file).name for file in files] + [TEST / "lens_sweep_bench.vhd"]
+
+
+def build(rtl, folder, log):
+    """Analyses the design into folder; gives the runner."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    runner = get_runner("ghdl")
+    runner.build(sources=sources(rtl), hdl_toplevel="lens_sweep_bench", build_args=[STANDARD], build_dir=folder,
+                 always=True, log_file=log)
+    return runner
+
+
+def simulate(runner, bench, rtl, folder, log, tests=None):
+    """Runs one bench; gives {test: passed}. A simulation that ends early has failed whatever it had passed."""
+    results = folder / f"{bench.name}.xml"
+    results.unlink(missing_ok=True)
+    environment = {"PYTHONPATH": str(TEST), "BENCH_RTL": str(rtl), "BENCH_COVERAGE": str(COVERAGE),
+                   "BENCH_CASES": str(BUILD), **bench.environment}
+    tests = tests or bench.environment.get("BENCH_TESTS")
+    finished = True
+    try:
+        runner.test(hdl_toplevel=bench.toplevel, test_module=bench.module, test_args=[STANDARD],
+                    elab_args=[], plusargs=["--ieee-asserts=disable-at-0"], parameters=bench.generics,
+                    build_dir=folder, test_dir=folder, extra_env=environment, results_xml=str(results), log_file=log,
+                    testcase=tests, seed=1, timescale=None)
+    except (RuntimeError, SystemExit):
+        finished = False
+    if not results.exists():
+        return {"simulation": False}
+    verdict = {}
+    for case in xml.etree.ElementTree.parse(results).iter("testcase"):
+        if case.find("skipped") is None:
+            verdict[case.get("name")] = case.find("failure") is None and case.find("error") is None
+    if not finished and all(verdict.values()):
+        verdict["simulation"] = False
+    return verdict
+
+
+class Report:
+    """Counts, and prints as it goes."""
+
+    def __init__(self):
+        self.passed = self.failed = 0
+
+    def add(self, name, good, log=None):
+        self.passed += good
+        self.failed += not good
+        print(f"{'PASS' if good else 'FAIL'}  {name}", flush=True)
+        if not good and log and log.exists():
+            print("\n".join(log.read_text(encoding="utf-8", errors="replace").splitlines()[-40:]), flush=True)
+
+
+def run_command(report, name, command, bad_words=()):
+    """A check that is a program: passes if it ends with 0 and prints none of the words."""
+    log = BUILD / f"{name.replace(' ', '_')}.log"
+    with open(log, "w", encoding="utf-8") as file:
+        code = subprocess.run(command, cwd=BUILD, stdout=file, stderr=subprocess.STDOUT, timeout=LIMIT_S,
+                              check=False).returncode
+    text = log.read_text(encoding="utf-8").lower()
+    report.add(name, code == 0 and not any(word in text for word in bad_words), log)
+
+
+def check_synthesis(report):
+    """GHDL's synthesis as a check only; its netlists are not used (it drops default choices in its Verilog)."""
+    work = BUILD / "synthesis"
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    for file in sources(RTL)[:-1]:
+        subprocess.run(["ghdl", "-a", STANDARD, f"--workdir={work}", str(file)], check=True)
+    run_command(report, "synthesis without a latch or a warning",
+                ["ghdl", "--synth", STANDARD, f"--workdir={work}", "--out=none", "lens_sweep_top"],
+                ("warning", "latch", "error"))
+    log = BUILD / "netlist.log"
+    with open(log, "w", encoding="utf-8") as file:
+        subprocess.run(["ghdl", "--synth", STANDARD, f"--workdir={work}", "--out=dump", "lens_sweep_top"], stdout=file,
+                       stderr=subprocess.DEVNULL, check=True)
+    text = log.read_text(encoding="utf-8").lower()
+    cells = [cell for cell in ("id_smul", "id_umul", "id_sdiv", "id_udiv", "id_smod", "id_umod", "id_srem",
+                               "id_latch", "id_dlatch") if cell in text]
+    report.add("no inferred divider, multiplier or latch " + " ".join(cells), "id_dff" in text and not cells)
+
+
+def check_mutations(report, every):
+    """Breaks a line of an entity and sees its bench fail."""
+    listed = tomllib.loads((TEST / "mutations.toml").read_text(encoding="utf-8"))["mutation"]
+    done = set()
+    for mutation in listed:
+        entity = mutation["entity"]
+        if entity in done and not every:
+            continue
+        done.add(entity)
+        folder = BUILD / "mutation"
+        rtl = folder / "rtl"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(RTL, rtl)
+        text = (rtl / f"{entity}.vhd").read_text(encoding="utf-8")
+        name = f"bench of {entity} notices: {mutation['breaks']}"
+        if text.count(mutation["line"]) != 1:
+            report.add(f"{name} (the line is not there, or not once)", False)
+            continue
+        (rtl / f"{entity}.vhd").write_text(text.replace(mutation["line"], mutation["becomes"]), encoding="utf-8")
+        bench = next(bench for bench in BENCHES if bench.name == mutation.get("bench", entity))
+        log = folder / "log"
+        try:
+            runner = build(rtl, folder / "build", folder / "build.log")
+            verdict = simulate(runner, bench, rtl, folder / "build", log, mutation.get("tests"))
+        except (RuntimeError, SystemExit):
+            report.add(f"{name} (it does not compile)", False)
+            continue
+        report.add(name, not all(verdict.values()))
+
+
+def print_coverage():
+    """States and error paths that the benches went through."""
+    seen = {}
+    for line in COVERAGE.read_text(encoding="utf-8").splitlines() if COVERAGE.exists() else []:
+        for what, names in json.loads(line).items():
+            seen.setdefault(what, set()).update(names)
+    sys.path.insert(0, str(TEST))
+    import coverage
+    from words import ERRORS
+    wanted = {f"{entity} state": coverage.states_of(entity)
+              for entity in ("sweep_sequencer", "i2c_master", "i2c_slave", "plane_table")}
+    wanted["error bit"] = ERRORS
+    complete = True
+    for what, names in wanted.items():
+        missing = [name for name in names if name not in seen.get(what, set())]
+        complete = complete and not missing
+        print(f"coverage: {what}: {len(names) - len(missing)} of {len(names)}"
+              + (f", missing {', '.join(missing)}" if missing else ""))
+    return complete
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--all-mutations", action="store_true")
+    options = parser.parse_args()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    COVERAGE.unlink(missing_ok=True)
+    report = Report()
+
+    if options.only in "registers":
+        run_command(report, "generated files are current", [sys.executable, str(FPGA / "generate.py"), "--check"])
+    if options.only in "synthesis":
+        check_synthesis(report)
+    if options.only in "style":
+        run_command(report, "vsg", ["vsg", "-c", str(FPGA / "vsg.yaml"), "-of", "syntastic", "-f",
+                                    *(str(file) for file in sources(RTL))])
+    benches = [bench for bench in BENCHES if options.only in bench.name and (TEST / f"{bench.module}.py").exists()]
+    if benches:
+        runner = build(RTL, BUILD / "design", BUILD / "build.log")
+        for bench in benches:
+            log = BUILD / f"{bench.name}.log"
+            for test, good in simulate(runner, bench, RTL, BUILD / "design", log).items():
+                report.add(f"{bench.name}: {test}", good, log)
+            for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
+                if "budget of" in line:
+                    print("      " + line[line.index("budget of"):])
+    if not options.only:
+        report.add("every state and every error bit was seen", print_coverage())
+    if options.only in "mutations" or options.all_mutations:
+        check_mutations(report, options.all_mutations)
+
+    print(f"{report.passed} passed, {report.failed} failed")
+    sys.exit(1 if report.failed else 0)
+
+
+if __name__ == "__main__":
+    main()
