@@ -3,6 +3,7 @@
 #include "engine/focus_engine.h"
 
 #include "engine/engine_error.h"
+#include "engine/paper_method.h"
 
 namespace dff {
 
@@ -30,76 +31,39 @@ std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackSha
 
 FocusEngine::FocusEngine(std::shared_ptr<Device> device, const StackShape &shape,
                          const DepthParameters &parameters)
-    : device_(with_room(std::move(device), shape)), shape_(shape), parameters_(parameters), queue_(device_),
-      stack_(queue_, shape), luma_(queue_, shape), focus_(queue_, shape, parameters.levels),
-      entropy_(queue_, shape, parameters.entropy_bits), sparse_(queue_, shape, parameters.tolerance),
-      reference_(queue_, shape, parameters.grid.sigma_chroma != 0), grid_(queue_, shape, parameters.grid),
-      blur_(queue_, shape.width, shape.height, GaussianBlur::taps_for(parameters.grid.sigma_xy)),
-      codes_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_ushort))),
-      depth_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
+    : device_(with_room(std::move(device), shape)), shape_(shape), queue_(device_), stack_(queue_, shape),
+      coder_(queue_, shape), method_(std::make_unique<PaperMethod>(queue_, shape, parameters))
 {
-    const Program program(*device_, "depth_code");
-    code_positions_ = program.kernel("code_positions");
-    code_planes_ = program.kernel("code_planes");
-    set_encoder(DepthEncoder::index(shape.planes));
 }
 
 void FocusEngine::set_encoder(const DepthEncoder &encoder)
 {
-    std::vector<cl_ushort> codes(DepthScale::max_pixel + 1, DepthScale::no_value);
-    for (unsigned i = 1; i < codes.size(); i++)
-        codes[i] =
-            encoder.encode((shape_.planes - 1) * (i - 1) / static_cast<double>(DepthScale::max_pixel - 1));
-    queue_.commands().enqueueWriteBuffer(codes_, CL_TRUE, 0, codes.size() * sizeof(cl_ushort), codes.data());
+    coder_.set_encoder(encoder);
 }
 
 bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
 {
-    bool known = false;
+    cl_ushort first = DepthScale::no_value;
     translate_errors(*device_, [&] {
         stack_.assign(stack);
-        luma_.run(stack_);
-        focus_.run(luma_);
-        if (parameters_.motion_mask || outputs.motion.pixels)
-            entropy_.run(luma_);
-        sparse_.run(focus_, parameters_.motion_mask ? &entropy_ : nullptr);
-        reference_.run(stack_, luma_);
-        grid_.run(sparse_, reference_);
-        blur_.run(grid_.u());
-
-        queue_.begin_stage("code");
-        queue_.run(code_positions_, {shape_.width, shape_.height}, grid_.u(), codes_, depth_,
-                   static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
-        read_outputs(outputs);
+        method_->run(stack_, coder_,
+                     {.sparse = outputs.sparse.pixels != nullptr,
+                      .confidence = outputs.confidence.pixels != nullptr,
+                      .motion = outputs.motion.pixels != nullptr});
+        read(method_->depth(), sizeof(cl_ushort), outputs.depth);
+        read(method_->sparse(), sizeof(cl_ushort), outputs.sparse);
+        read(method_->confidence(), sizeof(cl_uchar), outputs.confidence);
+        read(method_->motion(), sizeof(cl_uchar), outputs.motion);
+        queue_.commands().enqueueReadBuffer(method_->depth(), CL_FALSE, 0, sizeof first, &first);
         times_ = queue_.finish();
-
-        cl_ushort first = DepthScale::no_value;
-        queue_.commands().enqueueReadBuffer(depth_, CL_TRUE, 0, sizeof first, &first);
-        known = first != DepthScale::no_value;
     });
-    return known;
-}
-
-void FocusEngine::read_outputs(const DepthOutputs &outputs)
-{
-    if (outputs.sparse.pixels) {
-        if (!sparse_depth_())
-            sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
-        queue_.run(code_planes_, {shape_.width, shape_.height}, sparse_.planes(), codes_, sparse_depth_,
-                   static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
-        read(sparse_depth_, sizeof(cl_ushort), outputs.sparse);
-    }
-    if (outputs.confidence.pixels) {
-        sparse_.run_confidence(focus_);
-        read(sparse_.confidence(), sizeof(cl_uchar), outputs.confidence);
-    }
-    if (outputs.motion.pixels)
-        read(entropy_.moved(), sizeof(cl_uchar), outputs.motion);
-    read(depth_, sizeof(cl_ushort), outputs.depth);
+    return first != DepthScale::no_value;
 }
 
 void FocusEngine::read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output)
 {
+    if (!output.pixels)
+        return;
     const size_t row_bytes = shape_.width * pixel_bytes;
     queue_.commands().enqueueReadBufferRect(picture, CL_FALSE, {0, 0, 0}, {0, 0, 0},
                                             {row_bytes, shape_.height, 1}, row_bytes, 0, output.stride, 0,

@@ -2,20 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/bilateral_grid.h"
-#include "engine/gaussian_blur.h"
-#include "optics/depth_scale.h"
+#include "engine/depth_method.h"
+#include "engine/depth_parameters.h"
 
 namespace dff {
-
-/* Parameters of method=paper: Oliva-García 2022, section 2.3. */
-struct DepthParameters {
-    unsigned levels = 3;       /* pictures of falling resolution in the focus measure (2) */
-    float tolerance = 1.4f;    /* a kept peak stands so many times above the mean over the planes */
-    bool motion_mask = true;   /* leave pixels that moved during the sweep out of the sparse map (3) */
-    float entropy_bits = 2.0f; /* entropy along z above which a pixel moved */
-    BilateralGrid::Parameters grid;
-};
 
 /* A picture in host memory that an engine writes. Rows of `width` pixels follow each other after `stride`
  * bytes. */
@@ -50,23 +40,14 @@ public:
     const StageTimes &times() const { return times_; }
 
 private:
-    void read_outputs(const DepthOutputs &outputs);
     void read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output);
 
     std::shared_ptr<Device> device_;
     StackShape shape_;
-    DepthParameters parameters_;
     CommandQueue queue_;
     StackBuffer stack_;
-    Luma luma_;
-    FocusMeasure focus_;
-    ZEntropy entropy_;
-    SparseDepth sparse_;
-    ReferenceImage reference_;
-    BilateralGrid grid_;
-    GaussianBlur blur_;
-    cl::Kernel code_positions_, code_planes_;
-    cl::Buffer codes_, depth_, sparse_depth_;
+    DepthCoder coder_;
+    std::unique_ptr<DepthMethod> method_;
     StageTimes times_;
 };
 

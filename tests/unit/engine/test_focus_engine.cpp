@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/focus_engine.h"
+#include "engine/gaussian_blur.h"
 #include "twin_bilateral_grid.h"
 #include "twin_focus.h"
 

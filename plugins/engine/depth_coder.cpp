@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/depth_coder.h"
+
+#include "engine/opencl/program.h"
+
+namespace dff {
+
+DepthCoder::DepthCoder(CommandQueue &queue, const StackShape &shape)
+    : queue_(queue), shape_(shape), codes_(queue.allocate((DepthScale::max_pixel + 1) * sizeof(cl_ushort)))
+{
+    const Program program(queue.device(), "depth_code");
+    code_positions_ = program.kernel("code_positions");
+    code_planes_ = program.kernel("code_planes");
+    set_encoder(DepthEncoder::index(shape.planes));
+}
+
+void DepthCoder::set_encoder(const DepthEncoder &encoder)
+{
+    std::vector<cl_ushort> codes(DepthScale::max_pixel + 1, DepthScale::no_value);
+    for (unsigned i = 1; i < codes.size(); i++)
+        codes[i] =
+            encoder.encode((shape_.planes - 1) * (i - 1) / static_cast<double>(DepthScale::max_pixel - 1));
+    queue_.commands().enqueueWriteBuffer(codes_, CL_TRUE, 0, codes.size() * sizeof(cl_ushort), codes.data());
+}
+
+void DepthCoder::code_positions(const cl::Buffer &positions, const cl::Buffer &depth)
+{
+    queue_.run(code_positions_, {shape_.width, shape_.height}, positions, codes_, depth,
+               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
+}
+
+void DepthCoder::code_planes(const cl::Buffer &planes, const cl::Buffer &depth)
+{
+    queue_.run(code_planes_, {shape_.width, shape_.height}, planes, codes_, depth,
+               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
+}
+
+} // namespace dff

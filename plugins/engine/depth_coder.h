@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/opencl/command_queue.h"
+#include "engine/stack_shape.h"
+#include "optics/depth_scale.h"
+
+namespace dff {
+
+/* Turns plane positions on the device into the pixels of a depth map. */
+class DepthCoder {
+public:
+    DepthCoder(CommandQueue &queue, const StackShape &shape);
+
+    /* What the pixels mean from now on; DepthEncoder::index() until then. */
+    void set_encoder(const DepthEncoder &encoder);
+
+    /* ushort[height][width] from float positions, 0 from NAN. */
+    void code_positions(const cl::Buffer &positions, const cl::Buffer &depth);
+
+    /* ushort[height][width] from uchar planes, 0 from SparseDepth::unknown_plane. */
+    void code_planes(const cl::Buffer &planes, const cl::Buffer &depth);
+
+private:
+    CommandQueue &queue_;
+    StackShape shape_;
+    cl::Kernel code_positions_, code_planes_;
+    cl::Buffer codes_;
+};
+
+} // namespace dff

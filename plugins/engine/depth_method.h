@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/depth_coder.h"
+#include "engine/opencl/stack_buffer.h"
+
+namespace dff {
+
+/* A way from a stack to its maps. Every map has the picture's full size. */
+class DepthMethod {
+public:
+    /* The maps beside depth that a stack is asked for; the others cost nothing. */
+    struct Wanted {
+        bool sparse = false;
+        bool confidence = false;
+        bool motion = false;
+    };
+
+    virtual ~DepthMethod() = default;
+
+    /* Queues all stages. */
+    virtual void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) = 0;
+
+    virtual const cl::Buffer &depth() const = 0;      /* ushort; 0 everywhere if nothing could be told */
+    virtual const cl::Buffer &sparse() const = 0;     /* ushort, 0 where unknown */
+    virtual const cl::Buffer &confidence() const = 0; /* uchar: 255 c */
+    virtual const cl::Buffer &motion() const = 0;     /* uchar: 255 where it moved */
+};
+
+} // namespace dff
