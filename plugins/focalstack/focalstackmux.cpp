@@ -14,7 +14,7 @@
  * A sweep is over when all of its planes are there, or when a third frame of later sweeps has come (two may
  * overtake). What then is missing costs this one stack, or is filled in: see #focalstackmux:on-missing. Every
  * loss is counted in #focalstackmux:stats and posted as a QoS message. A source that numbers its sweeps anew
- * is followed after one sweep. A sweep of which not one frame came is never made up.
+ * is followed after one sweep or 16 frames. A sweep of which not one frame came is never made up.
  *
  * A stack's time is that of its first exposure's start, its duration reaches to the end of the last exposure.
  *

@@ -18,6 +18,12 @@ constexpr unsigned longest_stack = 64;
 /* A leap of the sweep's number by more is taken for a new numbering, not for a loss. */
 constexpr uint64_t longest_gap = 256;
 
+/* So many late frames in a row mean a new numbering too. Fewer than 16 may just be out of order. */
+constexpr unsigned longest_delay(unsigned planes)
+{
+    return planes > 16 ? planes : 16;
+}
+
 constexpr uint64_t plane_bit(unsigned plane)
 {
     return uint64_t{1} << plane;

@@ -19,12 +19,12 @@ GstClockTime frame_period(const GstVideoInfo &info)
     return numerator > 0 ? gst_util_uint64_scale(GST_SECOND, GST_VIDEO_INFO_FPS_D(&info), numerator) : 0;
 }
 
-GstFocalStackInfo stack_shape(const GstVideoInfo &frame, unsigned planes, bool side_by_side)
+GstFocalStackInfo stack_shape(const GstVideoInfo &frame, unsigned planes, unsigned frames_a_stack)
 {
     GstFocalStackInfo shape{frame, planes};
-    if (!side_by_side)
-        gst_util_fraction_multiply(frame.fps_n, frame.fps_d, 1, static_cast<gint>(planes), &shape.frame.fps_n,
-                                   &shape.frame.fps_d);
+    if (frames_a_stack > 1)
+        gst_util_fraction_multiply(frame.fps_n, frame.fps_d, 1, static_cast<gint>(frames_a_stack),
+                                   &shape.frame.fps_n, &shape.frame.fps_d);
     return shape;
 }
 
@@ -339,7 +339,8 @@ GstFlowReturn MuxCore::assemble(MuxInput &input, PlaneFrame &frame)
         refuse_damaged(frame, "its plane is not one of the sweep's");
         return GST_FLOW_OK;
     }
-    const GstFlowReturn flow = use_shape(stack_shape(input.info, planes, input.plane.has_value()));
+    const bool stack_a_frame = input.plane || settings_.window == StackWindow::Rolling;
+    const GstFlowReturn flow = use_shape(stack_shape(input.info, planes, stack_a_frame ? 1 : planes));
     return flow == GST_FLOW_OK ? put(frame, input.info) : flow;
 }
 
@@ -416,9 +417,10 @@ GstFlowReturn MuxCore::finish()
 void MuxCore::update_latency(const GstFocalStackInfo &shape)
 {
     const GstClockTime stack_period = frame_period(shape.frame);
-    const GstClockTime period = side_by_side_ ? stack_period : stack_period / shape.planes;
-    GstClockTime latency = side_by_side_ ? stack_period : period * (shape.planes - 1);
-    if (settings_.on_missing != OnMissing::Drop && settings_.window == StackWindow::Sweep)
+    const bool rolling = settings_.window == StackWindow::Rolling;
+    const GstClockTime period = side_by_side_ || rolling ? stack_period : stack_period / shape.planes;
+    GstClockTime latency = side_by_side_ ? period : period * (shape.planes - 1);
+    if (settings_.on_missing != OnMissing::Drop && !rolling)
         latency += side_by_side_ ? period : period * (StackMaker::default_allowance + 1);
     {
         const std::lock_guard lock(facts_);

@@ -29,7 +29,7 @@ FrameVerdict RollingWindow::add(uint64_t sweep, unsigned plane)
     if ((held_ & plane_bit(plane)) && sweep == sweep_[plane])
         return FrameVerdict::Repeated;
     if (passed(sweep, plane)) {
-        if (++late_in_a_row_ < planes_)
+        if (++late_in_a_row_ < longest_delay(planes_))
             return FrameVerdict::Late;
         restart(sweep, plane);
     }

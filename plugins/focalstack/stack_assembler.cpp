@@ -35,7 +35,7 @@ FrameVerdict StackAssembler::add(uint64_t sweep, unsigned plane)
 
 FrameVerdict StackAssembler::add_late(uint64_t sweep, unsigned plane)
 {
-    if (++late_in_a_row_ < planes_)
+    if (++late_in_a_row_ < longest_delay(planes_))
         return FrameVerdict::Late;
     finish();
     begin(sweep);

@@ -24,9 +24,8 @@ struct FinishedSweep {
  * come: so many frames may overtake one that still fits. Sweeps end in the order of their numbers, each
  * exactly once, those of which no frame came included.
  *
- * A source that starts to number its sweeps anew is followed at the cost of one sweep: as soon as a whole
- * sweep's worth of late frames came in a row, or at once where the number leaps by more than `longest_gap`.
- */
+ * A source that starts to number its sweeps anew is followed: as soon as longest_delay() frames in a row came
+ * late, or at once where the number leaps by more than `longest_gap`. */
 class StackAssembler {
 public:
     /* Throws std::invalid_argument unless there are 2 to 64 planes. */

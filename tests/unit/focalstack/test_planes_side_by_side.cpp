@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/frame_numbering.h"
+#include "focalstack/sweep_gate.h"
+
+#include <chrono>
+#include <future>
+#include <gtest/gtest.h>
+
+using dff::FrameNumbering;
+using dff::SweepGate;
+using namespace std::chrono_literals;
+
+TEST(FrameNumbering, a_lost_frame_leaves_a_gap)
+{
+    FrameNumbering numbering;
+    EXPECT_EQ(numbering.next(1000, 100, 1000), 0u);
+    EXPECT_EQ(numbering.next(1101, 100, 1000), 1u);
+    EXPECT_EQ(numbering.next(1302, 100, 1000), 3u);
+}
+
+TEST(FrameNumbering, a_source_that_starts_later_is_numbered_by_its_time)
+{
+    FrameNumbering numbering;
+    EXPECT_EQ(numbering.next(1260, 100, 1000), 3u);
+    EXPECT_EQ(numbering.next(1340, 100, 1000), 4u);
+}
+
+TEST(FrameNumbering, a_clock_that_drifts_skips_no_sweep)
+{
+    FrameNumbering numbering;
+    uint64_t sweep = 0;
+    for (uint64_t k = 0; k < 1000; k++)
+        sweep = numbering.next(k * 103, 100, 0);
+    EXPECT_EQ(sweep, 999u);
+}
+
+TEST(FrameNumbering, without_times_frames_are_counted)
+{
+    FrameNumbering numbering;
+    EXPECT_EQ(numbering.next(std::nullopt, 0, 0), 0u);
+    EXPECT_EQ(numbering.next(std::nullopt, 100, 0), 1u);
+}
+
+TEST(SweepGate, a_fast_source_waits_for_a_slow_one)
+{
+    SweepGate gate;
+    gate.open(0);
+    gate.open(1);
+    gate.arrive(1, 0);
+    gate.arrive(0, 2);
+    auto fast = std::async(std::launch::async, [&] { return gate.wait(2); });
+    EXPECT_EQ(fast.wait_for(50ms), std::future_status::timeout);
+    gate.arrive(1, 1);
+    EXPECT_EQ(fast.wait_for(5s), std::future_status::ready);
+    EXPECT_TRUE(fast.get());
+}
+
+TEST(SweepGate, nobody_waits_for_a_source_that_ended)
+{
+    SweepGate gate;
+    gate.open(0);
+    gate.open(1);
+    gate.arrive(0, 7);
+    auto other = std::async(std::launch::async, [&] { return gate.wait(7); });
+    gate.close(1);
+    ASSERT_EQ(other.wait_for(5s), std::future_status::ready);
+    EXPECT_TRUE(other.get());
+}
+
+TEST(SweepGate, shutting_wakes_who_waits)
+{
+    SweepGate gate;
+    gate.open(0);
+    auto waiting = std::async(std::launch::async, [&] { return gate.wait(1); });
+    gate.shut();
+    ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
+    EXPECT_FALSE(waiting.get());
+}
