@@ -53,3 +53,10 @@ build() {
     fi
     NINJA_STATUS='   [%f/%t] ' ninja -C "$folder" >"$folder/compile.log" 2>&1 || { tail -n 60 "$folder/compile.log"; return 1; }
 }
+
+# enter FOLDER: from here on, this shell sees the plug-ins, libraries and typelibs built in the folder.
+enter() {
+    set +u # Meson's lines name variables that may not be set.
+    eval "$(meson devenv -C "$1" --dump)"
+    set -u
+}
