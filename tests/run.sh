@@ -73,7 +73,7 @@ say "Testing the release build"
 meson_tests build-release
 
 say "Building in build-sanitize, with the address and undefined-behaviour sanitizers"
-check "sanitizer build, without a warning" build build-sanitize --buildtype=debugoptimized -Dwerror=true \
+check "sanitizer build, without a warning" build build-sanitize -Doptimization=g -Ddebug=true -Dwerror=true \
     -Dauto_features=enabled -Dintrospection=disabled -Db_sanitize=address,undefined -Db_lundef=false
 say "Testing the sanitizer build"
 meson_tests build-sanitize
