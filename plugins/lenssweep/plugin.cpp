@@ -4,13 +4,15 @@
 #include "config.h"
 #endif
 
+#include "lenssweeptag.h"
 #include "lenssweeptestsrc.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
-    return GST_ELEMENT_REGISTER(lenssweeptestsrc, plugin);
+    const gboolean tag = GST_ELEMENT_REGISTER(lenssweeptag, plugin);
+    const gboolean test_src = GST_ELEMENT_REGISTER(lenssweeptestsrc, plugin);
+    return tag && test_src;
 }
 
-GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lenssweep,
-                  "Sources of planes taken with a swept focus", plugin_init, VERSION, GST_LICENSE, PACKAGE,
-                  GST_PACKAGE_ORIGIN)
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lenssweep, "Planes taken with a swept focus",
+                  plugin_init, VERSION, GST_LICENSE, PACKAGE, GST_PACKAGE_ORIGIN)

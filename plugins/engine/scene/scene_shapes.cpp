@@ -42,7 +42,7 @@ Ball ball(double x, double z, double radius)
 
 Block block(double x, double z, const cv::Vec3d &half, double turn)
 {
-    return {{x, ground_height - half[1], z}, half, turn};
+    return {{x, ground_height - half[1], z}, half, std::cos(turn), std::sin(turn)};
 }
 
 Pillar pillar(double x, double z, double radius, double half_height)
@@ -144,8 +144,7 @@ private:
         const double facing = std::max(0.0, hit.normal.dot(lamp));
         const double light = in_shadow({point + 1e-4 * hit.normal, lamp}) ? 0.0 : 1.0;
         const cv::Vec3d halfway = cv::normalize(lamp - cv::normalize(ray.direction));
-        const double highlight =
-            thing.material.gloss * std::pow(std::max(0.0, hit.normal.dot(halfway)), 40.0);
+        const double highlight = thing.material.gloss * std::pow(std::max(0.0, hit.normal.dot(halfway)), 40);
         const Color color = thing.material.color(local_point(thing.solid, point));
         const double sky = 0.36 - 0.1 * hit.normal[1];
         return color * (sky + 0.72 * facing * light) + Color::all(0.8 * highlight * light);

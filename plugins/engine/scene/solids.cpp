@@ -13,11 +13,15 @@ namespace {
 /* A ray that starts on a surface does not meet it again at once. */
 constexpr double nearest = 1e-6;
 
-cv::Vec3d turn_about_vertical(const cv::Vec3d &v, double angle)
+/* From the camera's axes to those of the block, and back. */
+cv::Vec3d to_block(const Block &block, const cv::Vec3d &v)
 {
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    return {c * v[0] + s * v[2], v[1], -s * v[0] + c * v[2]};
+    return {block.cosine * v[0] + block.sine * v[2], v[1], block.cosine * v[2] - block.sine * v[0]};
+}
+
+cv::Vec3d from_block(const Block &block, const cv::Vec3d &v)
+{
+    return {block.cosine * v[0] - block.sine * v[2], v[1], block.cosine * v[2] + block.sine * v[0]};
 }
 
 std::optional<Hit> meet(const Ball &ball, const Ray &ray)
@@ -36,8 +40,8 @@ std::optional<Hit> meet(const Ball &ball, const Ray &ray)
 
 std::optional<Hit> meet(const Block &block, const Ray &ray)
 {
-    const cv::Vec3d origin = turn_about_vertical(ray.origin - block.center, block.turn);
-    const cv::Vec3d direction = turn_about_vertical(ray.direction, block.turn);
+    const cv::Vec3d origin = to_block(block, ray.origin - block.center);
+    const cv::Vec3d direction = to_block(block, ray.direction);
     double enter = -std::numeric_limits<double>::infinity();
     double leave = std::numeric_limits<double>::infinity();
     int face = 0;
@@ -54,7 +58,7 @@ std::optional<Hit> meet(const Block &block, const Ray &ray)
         return std::nullopt;
     cv::Vec3d normal;
     normal[face] = direction[face] > 0.0 ? -1.0 : 1.0;
-    return Hit{enter, turn_about_vertical(normal, -block.turn)};
+    return Hit{enter, from_block(block, normal)};
 }
 
 std::optional<Hit> meet_mantle(const Pillar &pillar, const Ray &ray, const cv::Vec3d &offset)
@@ -103,7 +107,7 @@ cv::Vec3d local_point(const Solid &solid, const cv::Vec3d &point)
 {
     const cv::Vec3d offset = point - std::visit([](const auto &shape) { return shape.center; }, solid);
     if (const auto *block = std::get_if<Block>(&solid))
-        return turn_about_vertical(offset, block->turn);
+        return to_block(*block, offset);
     return offset;
 }
 

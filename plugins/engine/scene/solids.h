@@ -27,11 +27,12 @@ struct Ball {
     double radius;
 };
 
-/* A box that stands upright, turned about its vertical axis. */
+/* A box that stands upright, turned about its vertical axis by the angle of this cosine and sine. */
 struct Block {
     cv::Vec3d center;
     cv::Vec3d half;
-    double turn; /* radians */
+    double cosine;
+    double sine;
 };
 
 /* An upright cylinder. */

@@ -2,13 +2,15 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace dff {
 
-/* Fractal value noise in three dimensions, about 0..1 with mean 0.5. `detail` is the length of its finest
- * wave, its coarsest is 1; each octave has `persistence` of the contrast of the one before. */
+/* Fractal value noise in three dimensions, about 0..1 with mean 0.5. Its coarsest wave has length 1, its
+ * finest `detail`; each octave has `persistence` of the contrast of the one before. An octave repeats itself
+ * after 256 of its waves. */
 class FractalNoise {
 public:
     FractalNoise(uint64_t seed, double detail, double persistence = 0.7);
@@ -16,12 +18,13 @@ public:
     double operator()(const cv::Vec3d &point) const;
 
 private:
-    double lattice(int64_t x, int64_t y, int64_t z) const;
     double smooth(const cv::Vec3d &point) const;
 
-    uint64_t seed_;
+    std::array<uint8_t, 256> shuffled_;
+    std::array<float, 256> values_;
     int octaves_;
     double persistence_;
+    double normalisation_;
 };
 
 } // namespace dff
