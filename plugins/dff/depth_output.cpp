@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "depth_output.h"
+
+namespace dff {
+
+DepthOutput::DepthOutput(GstElement *element, GstPad *pad, GstVideoFormat format)
+    : element_(element), pad_(GST_PAD(gst_object_ref(pad))), format_(format)
+{
+}
+
+DepthOutput::~DepthOutput()
+{
+    gst_clear_caps(&caps_);
+    gst_object_unref(pad_);
+}
+
+void DepthOutput::open()
+{
+    if (opened_)
+        return;
+    opened_ = true;
+    g_autofree gchar *name = gst_pad_get_name(pad_);
+    g_autofree gchar *stream_id = gst_pad_create_stream_id(pad_, element_, name);
+    g_autoptr(GstEvent) upstream = nullptr;
+    g_autoptr(GstPad) sink = gst_element_get_static_pad(element_, "sink");
+    guint group = 0;
+
+    GstEvent *event = gst_event_new_stream_start(stream_id);
+    upstream = gst_pad_get_sticky_event(sink, GST_EVENT_STREAM_START, 0);
+    if (upstream && gst_event_parse_group_id(upstream, &group))
+        gst_event_set_group_id(event, group);
+    gst_pad_push_event(pad_, event);
+}
+
+void DepthOutput::restart()
+{
+    opened_ = false;
+    has_segment_ = false;
+    gst_clear_caps(&caps_);
+}
+
+void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const GstSegment &segment)
+{
+    open();
+
+    GstVideoInfo info;
+    gst_video_info_set_format(&info, format_, GST_VIDEO_INFO_WIDTH(&stack), GST_VIDEO_INFO_HEIGHT(&stack));
+    GST_VIDEO_INFO_FPS_N(&info) = GST_VIDEO_INFO_FPS_N(&stack);
+    GST_VIDEO_INFO_FPS_D(&info) = GST_VIDEO_INFO_FPS_D(&stack);
+    g_autoptr(GstCaps) caps = gst_video_info_to_caps(&info);
+    if (format_ == GST_VIDEO_FORMAT_GRAY16_LE)
+        gst_depth_info_to_caps(&depth, caps);
+
+    if (!caps_ || !gst_caps_is_equal(caps, caps_)) {
+        gst_caps_replace(&caps_, caps);
+        gst_pad_push_event(pad_, gst_event_new_caps(caps));
+        pool_.start(info);
+    }
+    if (!has_segment_ || !gst_segment_is_equal(&segment_, &segment)) {
+        segment_ = segment;
+        has_segment_ = true;
+        gst_pad_push_event(pad_, gst_event_new_segment(&segment));
+    }
+}
+
+} // namespace dff

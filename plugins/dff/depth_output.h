@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "gstcl/picture_pool.h"
+
+#include <gst/dff/dff.h>
+#include <string>
+
+namespace dff {
+
+/* One source pad of dffdepth with what it has to send before its first picture. Used by the streaming thread
+ * alone, but for the pad itself. */
+class DepthOutput {
+public:
+    DepthOutput(GstElement *element, GstPad *pad, GstVideoFormat format);
+    ~DepthOutput();
+
+    DepthOutput(const DepthOutput &) = delete;
+    DepthOutput &operator=(const DepthOutput &) = delete;
+
+    GstPad *pad() const { return pad_; }
+    GstVideoFormat format() const { return format_; }
+    bool is_linked() const { return gst_pad_is_linked(pad_); }
+
+    /* Sends stream-start, caps and segment where they are not the last that were sent. `depth` stands in the
+     * caps of 16-bit maps. */
+    void prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const GstSegment &segment);
+
+    /* Sends stream-start if nothing was sent yet, so that other events may follow. */
+    void open();
+
+    /* After a flush or a new stream everything is sent again. */
+    void restart();
+
+    /* Returns a picture of the prepared size, or nullptr if memory ran out. */
+    GstBuffer *acquire() { return pool_.acquire(); }
+
+private:
+    GstElement *element_;
+    GstPad *pad_;
+    GstVideoFormat format_;
+    PicturePool pool_;
+    GstCaps *caps_ = nullptr;
+    GstSegment segment_{};
+    bool opened_ = false;
+    bool has_segment_ = false;
+};
+
+} // namespace dff

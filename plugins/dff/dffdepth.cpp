@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:element-dffdepth
+ * @title: dffdepth
+ * @short_description: depth from focal stacks
+ *
+ * Computes a dense depth map from each focal stack: the depth from focus of Oliva-García et al., Applied
+ * Sciences 2022, 12, 3141, on any OpenCL device. Exactly one depth frame leaves for each stack; where nothing
+ * can be told it is all 0
+ * ("no value") and has the flags GAP and CORRUPTED.
+ *
+ * The request pads `sparse` (depth before it is filled, 0 = unknown), `confidence` (GRAY8) and `motion`
+ * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.
+ *
+ * |[
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! dffdepth ! videoconvert ! fakesink
+ * ]|
+ */
+#include "dffdepth.h"
+
+#include "depth_maps.h"
+#include "dffdepth_properties.h"
+#include "gstcl/depth_facts.h"
+#include "gstcl/engine_message.h"
+#include "gstcl/mapped_stack.h"
+
+#include <gst/base/gstflowcombiner.h>
+#include <gst/dff/dff.h>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+GST_DEBUG_CATEGORY_STATIC(dff_depth_debug);
+#define GST_CAT_DEFAULT dff_depth_debug
+
+using dff::DepthOutput;
+
+namespace {
+
+constexpr guint property_stats = dff::depth_properties_end;
+
+struct Statistics {
+    guint64 stacks = 0;
+    guint64 without_depth = 0;
+    GstClockTime compute_time = 0; /* of the last stack */
+    dff::StageTimes stages;
+};
+
+/* What dffdepth knows between two buffers. */
+struct State {
+    /* Guards settings, outputs, flows and statistics. Held for copies only: never while the engine works,
+     * while a pad pushes, or around another lock but the element's own. */
+    std::mutex mutex;
+    dff::DepthSettings settings;
+    bool settings_changed = true;
+    std::vector<std::shared_ptr<DepthOutput>> outputs; /* the depth first */
+    GstFlowCombiner *flows = gst_flow_combiner_new();
+    Statistics statistics;
+    GstClockTime latency = 0;
+
+    /* The streaming thread's own. */
+    std::shared_ptr<dff::Device> device;
+    std::unique_ptr<dff::FocusEngine> engine;
+    std::optional<dff::DepthEncoder> encoder;
+    dff::PlanePositions positions;
+    GstDepthUnit unit = GST_DEPTH_UNIT_AUTO;
+    GstFocalStackInfo info{};
+    bool has_caps = false;
+    GstSegment segment{};
+    guint64 next_stack = 0;
+
+    ~State() { gst_flow_combiner_free(flows); }
+};
+
+using Outputs = std::vector<std::shared_ptr<DepthOutput>>;
+
+} // namespace
+
+struct _GstDffDepth {
+    GstElement parent;
+    GstPad *sink;
+    State *state;
+};
+
+G_DEFINE_FINAL_TYPE(GstDffDepth, gst_dff_depth, GST_TYPE_ELEMENT)
+GST_ELEMENT_REGISTER_DEFINE(dffdepth, "dffdepth", GST_RANK_NONE, GST_TYPE_DFF_DEPTH)
+
+#define STACK_CAPS                                                                                           \
+    GST_FOCAL_STACK_CAPS_NAME                                                                                \
+    ", format = (string) " GST_FOCAL_STACK_FORMATS                                                           \
+    ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ], planes = (int) [ 2, 64 ]"                    \
+    ", framerate = (fraction) [ 0, max ]"
+#define MAP_CAPS(format)                                                                                     \
+    "video/x-raw, format = (string) " format ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"     \
+    ", framerate = (fraction) [ 0, max ]"
+
+static GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(STACK_CAPS));
+static GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(MAP_CAPS("GRAY16_LE")));
+static GstStaticPadTemplate sparse_template =
+    GST_STATIC_PAD_TEMPLATE("sparse", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY16_LE")));
+static GstStaticPadTemplate confidence_template =
+    GST_STATIC_PAD_TEMPLATE("confidence", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
+static GstStaticPadTemplate motion_template =
+    GST_STATIC_PAD_TEMPLATE("motion", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
+
+static Outputs outputs_of(State &state)
+{
+    const std::lock_guard lock(state.mutex);
+    return state.outputs;
+}
+
+/* Makes the engine anew where caps or properties have changed. Throws dff::EngineError. */
+static void ensure_engine(State &state)
+{
+    dff::DepthSettings settings;
+    {
+        const std::lock_guard lock(state.mutex);
+        settings = state.settings;
+        if (state.settings_changed)
+            state.engine.reset();
+        state.settings_changed = false;
+    }
+    if (state.engine)
+        return;
+    state.engine =
+        std::make_unique<dff::FocusEngine>(state.device, dff::stack_shape(state.info), settings.parameters);
+    state.unit = settings.unit;
+    state.encoder.reset();
+}
+
+/* Throws std::invalid_argument if the unit cannot be had for this stack. */
+static void ensure_encoder(State &state, GstBuffer *stack)
+{
+    dff::PlanePositions positions = dff::plane_positions(stack);
+    if (state.encoder && positions == state.positions)
+        return;
+    state.encoder = dff::make_encoder(state.unit, state.info.planes, positions);
+    state.positions = std::move(positions);
+    state.engine->set_encoder(*state.encoder);
+}
+
+static GstDepthInfo depth_info_of(const State &state, GstBuffer *stack)
+{
+    GstDepthInfo depth = dff::depth_info(*state.encoder, state.positions);
+    GstFocusInfo focus;
+
+    depth.sequence = state.next_stack;
+    if (const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack)) {
+        depth.sequence = meta->sequence;
+        gst_focal_stack_meta_get_focus(meta, 0, &focus);
+        depth.sweep = focus.sweep;
+    }
+    return depth;
+}
+
+/* Announces a new latency when the computing takes notably longer than was said. */
+static void account(GstDffDepth *self, GstClockTime compute_time, bool known)
+{
+    State &state = *self->state;
+    bool slower = false;
+    {
+        const std::lock_guard lock(state.mutex);
+        state.statistics.stacks++;
+        state.statistics.without_depth += !known;
+        state.statistics.compute_time = compute_time;
+        if (state.engine)
+            state.statistics.stages = state.engine->times();
+        slower = compute_time > state.latency + state.latency / 4 + GST_MSECOND;
+        if (slower)
+            state.latency = compute_time;
+    }
+    if (slower)
+        gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+}
+
+/* Returns false where nothing can be told of the stack. */
+static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *stack, dff::DepthMaps &maps)
+{
+    if (GST_BUFFER_FLAG_IS_SET(stack, GST_BUFFER_FLAG_GAP))
+        return false;
+    try {
+        return self->state->engine->compute(view, maps.outputs());
+    } catch (const dff::EngineError &error) {
+        dff::post_engine_warning(GST_ELEMENT(self), error);
+        return false;
+    }
+}
+
+static GstFlowReturn push(State &state, dff::DepthMaps &maps)
+{
+    GstFlowReturn flow = GST_FLOW_NOT_LINKED;
+    maps.push([&](GstPad *pad, GstFlowReturn pushed) {
+        const std::lock_guard lock(state.mutex);
+        flow = gst_flow_combiner_update_pad_flow(state.flows, pad, pushed);
+    });
+    return flow;
+}
+
+static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer *buffer)
+{
+    GstDffDepth *self = GST_DFF_DEPTH(parent);
+    State &state = *self->state;
+    g_autoptr(GstBuffer) stack = buffer;
+
+    if (!state.has_caps) {
+        GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
+                          ("A stack came before its caps: put a capsfilter with " GST_FOCAL_STACK_CAPS_NAME
+                           ", format, width, height, planes and framerate before dffdepth"),
+                          (nullptr));
+        return GST_FLOW_NOT_NEGOTIATED;
+    }
+    try {
+        const dff::MappedStack mapped(state.info, stack);
+        ensure_engine(state);
+        ensure_encoder(state, stack);
+        dff::DepthMaps maps(outputs_of(state), state.info.frame, depth_info_of(state, stack), state.segment);
+
+        const GstClockTime start = gst_util_get_timestamp();
+        const bool known = compute(self, mapped.view(), stack, maps);
+        if (!known)
+            maps.blank();
+        maps.stamp(stack, state.next_stack);
+        account(self, gst_util_get_timestamp() - start, known);
+        state.next_stack++;
+        return push(state, maps);
+    } catch (const dff::EngineError &error) {
+        dff::post_engine_error(GST_ELEMENT(self), error);
+    } catch (const std::invalid_argument &error) {
+        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
+    } catch (const std::runtime_error &error) {
+        GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", error.what()), (nullptr));
+    }
+    return GST_FLOW_ERROR;
+}
+
+static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
+{
+    State &state = *self->state;
+    GstFocalStackInfo info;
+
+    if (!gst_focal_stack_info_from_caps(&info, caps)) {
+        GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
+                          ("These are not the caps of a focal stack: %" GST_PTR_FORMAT, caps), (nullptr));
+        return FALSE;
+    }
+    state.info = info;
+    state.has_caps = true;
+    state.engine.reset();
+    return TRUE;
+}
+
+/* A stream of bytes (a file) becomes a stream in time. */
+static void set_segment(State &state, const GstSegment *segment)
+{
+    state.segment = *segment;
+    if (segment->format != GST_FORMAT_TIME)
+        gst_segment_init(&state.segment, GST_FORMAT_TIME);
+}
+
+static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
+{
+    GstDffDepth *self = GST_DFF_DEPTH(parent);
+    State &state = *self->state;
+
+    switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_STREAM_START:
+        for (const auto &output : outputs_of(state))
+            output->restart();
+        gst_event_unref(event); /* each output opens with its own */
+        return TRUE;
+    case GST_EVENT_CAPS: {
+        GstCaps *caps = nullptr;
+        gst_event_parse_caps(event, &caps);
+        const gboolean accepted = set_caps(self, caps);
+        gst_event_unref(event); /* each output has its own, sent before its next picture */
+        return accepted;
+    }
+    case GST_EVENT_SEGMENT: {
+        const GstSegment *segment = nullptr;
+        gst_event_parse_segment(event, &segment);
+        set_segment(state, segment);
+        gst_event_unref(event);
+        return TRUE;
+    }
+    case GST_EVENT_FLUSH_STOP: {
+        for (const auto &output : outputs_of(state))
+            output->restart();
+        const std::lock_guard lock(state.mutex);
+        gst_flow_combiner_reset(state.flows);
+        break;
+    }
+    default:
+        if (GST_EVENT_IS_SERIALIZED(event))
+            for (const auto &output : outputs_of(state))
+                output->open();
+        break;
+    }
+    return gst_pad_event_default(pad, parent, event);
+}
+
+static gboolean gst_dff_depth_src_query(GstPad *pad, GstObject *parent, GstQuery *query)
+{
+    State &state = *GST_DFF_DEPTH(parent)->state;
+    gboolean live = FALSE;
+    GstClockTime least = 0, most = GST_CLOCK_TIME_NONE;
+
+    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY)
+        return gst_pad_query_default(pad, parent, query);
+    if (!gst_pad_peer_query(GST_DFF_DEPTH(parent)->sink, query))
+        return FALSE;
+    gst_query_parse_latency(query, &live, &least, &most);
+    const std::lock_guard lock(state.mutex);
+    gst_query_set_latency(query, live, least + state.latency,
+                          GST_CLOCK_TIME_IS_VALID(most) ? most + state.latency : most);
+    return TRUE;
+}
+
+static void add_output(GstDffDepth *self, GstPad *pad, GstVideoFormat format)
+{
+    State &state = *self->state;
+
+    gst_pad_set_query_function(pad, gst_dff_depth_src_query);
+    gst_pad_use_fixed_caps(pad);
+    {
+        const std::lock_guard lock(state.mutex);
+        gst_flow_combiner_add_pad(state.flows, pad);
+        state.outputs.push_back(std::make_shared<DepthOutput>(GST_ELEMENT(self), pad, format));
+    }
+    gst_element_add_pad(GST_ELEMENT(self), pad);
+}
+
+static GstPad *gst_dff_depth_request_new_pad(GstElement *element, GstPadTemplate *templ, const gchar *,
+                                             const GstCaps *)
+{
+    g_autoptr(GstPad) taken = gst_element_get_static_pad(element, templ->name_template);
+    if (taken) {
+        GST_WARNING_OBJECT(element, "The pad %s is in use already", templ->name_template);
+        return nullptr;
+    }
+    GstPad *pad = gst_pad_new_from_template(templ, templ->name_template);
+    gst_pad_set_active(pad, TRUE);
+    add_output(GST_DFF_DEPTH(element), pad,
+               g_str_equal(templ->name_template, "sparse") ? GST_VIDEO_FORMAT_GRAY16_LE
+                                                           : GST_VIDEO_FORMAT_GRAY8);
+    return pad;
+}
+
+static void gst_dff_depth_release_pad(GstElement *element, GstPad *pad)
+{
+    State &state = *GST_DFF_DEPTH(element)->state;
+    {
+        const std::lock_guard lock(state.mutex);
+        gst_flow_combiner_remove_pad(state.flows, pad);
+        std::erase_if(state.outputs, [&](const auto &output) { return output->pad() == pad; });
+    }
+    gst_pad_set_active(pad, FALSE);
+    gst_element_remove_pad(element, pad);
+}
+
+static bool open_device(GstDffDepth *self)
+{
+    State &state = *self->state;
+    std::string wish;
+    {
+        const std::lock_guard lock(state.mutex);
+        wish = state.settings.device;
+    }
+    try {
+        state.device = dff::Device::open(wish);
+        GST_INFO_OBJECT(self, "computing on %s", state.device->name().c_str());
+        return true;
+    } catch (const dff::EngineError &error) {
+        dff::post_engine_error(GST_ELEMENT(self), error);
+        return false;
+    }
+}
+
+static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstStateChange transition)
+{
+    GstDffDepth *self = GST_DFF_DEPTH(element);
+    State &state = *self->state;
+
+    if (transition == GST_STATE_CHANGE_NULL_TO_READY && !open_device(self))
+        return GST_STATE_CHANGE_FAILURE;
+
+    const GstStateChangeReturn result =
+        GST_ELEMENT_CLASS(gst_dff_depth_parent_class)->change_state(element, transition);
+
+    if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
+        state.engine.reset();
+        state.has_caps = false;
+        state.next_stack = 0;
+        for (const auto &output : outputs_of(state))
+            output->restart();
+        const std::lock_guard lock(state.mutex);
+        gst_flow_combiner_reset(state.flows);
+        state.statistics = {};
+        state.latency = 0;
+    }
+    if (transition == GST_STATE_CHANGE_READY_TO_NULL)
+        state.device.reset();
+    return result;
+}
+
+static GstStructure *make_stats(State &state)
+{
+    const std::lock_guard lock(state.mutex);
+    const Statistics &s = state.statistics;
+    GstStructure *stats = gst_structure_new(
+        "dffdepth-stats", "stacks", G_TYPE_UINT64, s.stacks, "without-depth", G_TYPE_UINT64, s.without_depth,
+        "compute-ms", G_TYPE_DOUBLE, static_cast<gdouble>(s.compute_time) / 1e6, nullptr);
+    for (const auto &[stage, milliseconds] : s.stages)
+        gst_structure_set(stats, (stage + "-ms").c_str(), G_TYPE_DOUBLE, milliseconds, nullptr);
+    return stats;
+}
+
+static void gst_dff_depth_set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
+{
+    State &state = *GST_DFF_DEPTH(object)->state;
+    const std::lock_guard lock(state.mutex);
+    if (!dff::set_depth_property(state.settings, id, value))
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    state.settings_changed = true;
+}
+
+static void gst_dff_depth_get_property(GObject *object, guint id, GValue *value, GParamSpec *pspec)
+{
+    State &state = *GST_DFF_DEPTH(object)->state;
+    if (id == property_stats) {
+        g_value_take_boxed(value, make_stats(state));
+        return;
+    }
+    const std::lock_guard lock(state.mutex);
+    if (!dff::get_depth_property(state.settings, id, value))
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+}
+
+static void gst_dff_depth_finalize(GObject *object)
+{
+    delete GST_DFF_DEPTH(object)->state;
+    G_OBJECT_CLASS(gst_dff_depth_parent_class)->finalize(object);
+}
+
+static void gst_dff_depth_init(GstDffDepth *self)
+{
+    self->state = new State;
+    self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
+    gst_pad_set_chain_function(self->sink, gst_dff_depth_chain);
+    gst_pad_set_event_function(self->sink, gst_dff_depth_sink_event);
+    gst_element_add_pad(GST_ELEMENT(self), self->sink);
+    add_output(self, gst_pad_new_from_static_template(&src_template, "src"), GST_VIDEO_FORMAT_GRAY16_LE);
+}
+
+static void gst_dff_depth_class_init(GstDffDepthClass *klass)
+{
+    GObjectClass *object_class = G_OBJECT_CLASS(klass);
+    GstElementClass *element_class = GST_ELEMENT_CLASS(klass);
+
+    GST_DEBUG_CATEGORY_INIT(dff_depth_debug, "dffdepth", 0, "depth from focal stacks");
+    object_class->set_property = gst_dff_depth_set_property;
+    object_class->get_property = gst_dff_depth_get_property;
+    object_class->finalize = gst_dff_depth_finalize;
+    element_class->change_state = gst_dff_depth_change_state;
+    element_class->request_new_pad = gst_dff_depth_request_new_pad;
+    element_class->release_pad = gst_dff_depth_release_pad;
+
+    dff::install_depth_properties(object_class);
+    g_object_class_install_property(
+        object_class, property_stats,
+        g_param_spec_boxed(
+            "stats", "Stats",
+            "Stacks so far, those without any depth, and milliseconds the last one took, whole and for "
+            "each stage",
+            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+
+    for (GstStaticPadTemplate *pad_template :
+         {&sink_template, &src_template, &sparse_template, &confidence_template, &motion_template})
+        gst_element_class_add_static_pad_template(element_class, pad_template);
+    gst_element_class_set_static_metadata(element_class, "Depth from focus", "Filter/Analyzer/Video",
+                                          "Computes a depth map from each focal stack",
+                                          "the gst-plugins-dff authors");
+}

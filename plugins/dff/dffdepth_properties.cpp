@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "dffdepth_properties.h"
+
+namespace dff {
+
+namespace {
+
+namespace property {
+enum : guint {
+    Unit = 1,
+    Device,
+    Levels,
+    Tolerance,
+    MotionMask,
+    EntropyBits,
+    SigmaXy,
+    SigmaLuma,
+    SigmaChroma,
+    Lambda,
+    Iterations,
+    End,
+};
+} // namespace property
+static_assert(property::End == depth_properties_end);
+
+constexpr auto playing =
+    static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+constexpr auto ready =
+    static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
+
+} // namespace
+
+void install_depth_properties(GObjectClass *object_class)
+{
+    const DepthSettings defaults;
+    const DepthParameters &p = defaults.parameters;
+    const auto install = [&](guint id, GParamSpec *spec) {
+        g_object_class_install_property(object_class, id, spec);
+    };
+
+    install(
+        property::Unit,
+        g_param_spec_enum("unit", "Unit",
+                          "Unit of the depth map; auto is dioptre where the planes' powers are known, else "
+                          "index",
+                          GST_TYPE_DEPTH_UNIT, defaults.unit, playing));
+    install(property::Device,
+            g_param_spec_string("device", "Device",
+                                "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; "
+                                "empty: the first GPU, else the CPU",
+                                defaults.device.c_str(), ready));
+    install(
+        property::Levels,
+        g_param_spec_uint("levels", "Levels",
+                          "Pictures of falling resolution that the focus measure multiplies (the paper: 3); "
+                          "more keep less noise and less detail",
+                          1, 4, p.levels, playing));
+    install(property::Tolerance,
+            g_param_spec_float("tolerance", "Tolerance",
+                               "How many times above its mean over the planes a pixel's best response must "
+                               "stand to be kept",
+                               1.0f, 64.0f, p.tolerance, playing));
+    install(property::MotionMask,
+            g_param_spec_boolean("motion-mask", "Motion mask",
+                                 "Leave pixels that moved during the sweep out of the sparse depth",
+                                 p.motion_mask, playing));
+    install(property::EntropyBits,
+            g_param_spec_float(
+                "entropy-bits", "Entropy bits",
+                "Entropy of a pixel's luma along the planes, in bits over bins of 32 DN, above which it "
+                "moved during the sweep. Lower finds more movement and takes more of the blur for it; "
+                "it cannot exceed log2 of the planes",
+                0.0f, 3.0f, p.entropy_bits, playing));
+    install(property::SigmaXy,
+            g_param_spec_uint("sigma-xy", "Sigma xy",
+                              "How far depth spreads into unknown pixels: size of a bilateral cell in pixels",
+                              4, 256, p.grid.sigma_xy, playing));
+    install(property::SigmaLuma,
+            g_param_spec_uint("sigma-luma", "Sigma luma",
+                              "Across which luma edges depth spreads: size of a bilateral cell in DN of 8 "
+                              "bits",
+                              4, 256, p.grid.sigma_luma, playing));
+    install(property::SigmaChroma,
+            g_param_spec_uint("sigma-chroma", "Sigma chroma",
+                              "Across which chroma edges depth spreads, in DN of 8 bits; 0: chroma is not "
+                              "looked at. The cost grows with (256 / sigma-chroma)^2",
+                              0, 256, p.grid.sigma_chroma, playing));
+    install(property::Lambda,
+            g_param_spec_float("lambda", "Lambda", "Weight of smoothness against the sparse depth", 0.0f,
+                               1000.0f, p.grid.lambda, playing));
+    install(property::Iterations,
+            g_param_spec_uint("iterations", "Iterations", "Steps of the solver that fills unknown pixels", 0,
+                              1000, p.grid.iterations, playing));
+}
+
+bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
+{
+    DepthParameters &p = settings.parameters;
+    switch (id) {
+    case property::Unit:
+        settings.unit = static_cast<GstDepthUnit>(g_value_get_enum(value));
+        return true;
+    case property::Device:
+        settings.device = g_value_get_string(value) ? g_value_get_string(value) : "";
+        return true;
+    case property::Levels:
+        p.levels = g_value_get_uint(value);
+        return true;
+    case property::Tolerance:
+        p.tolerance = g_value_get_float(value);
+        return true;
+    case property::MotionMask:
+        p.motion_mask = g_value_get_boolean(value);
+        return true;
+    case property::EntropyBits:
+        p.entropy_bits = g_value_get_float(value);
+        return true;
+    case property::SigmaXy:
+        p.grid.sigma_xy = g_value_get_uint(value);
+        return true;
+    case property::SigmaLuma:
+        p.grid.sigma_luma = g_value_get_uint(value);
+        return true;
+    case property::SigmaChroma:
+        p.grid.sigma_chroma = g_value_get_uint(value);
+        return true;
+    case property::Lambda:
+        p.grid.lambda = g_value_get_float(value);
+        return true;
+    case property::Iterations:
+        p.grid.iterations = g_value_get_uint(value);
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool get_depth_property(const DepthSettings &settings, guint id, GValue *value)
+{
+    const DepthParameters &p = settings.parameters;
+    switch (id) {
+    case property::Unit:
+        g_value_set_enum(value, settings.unit);
+        return true;
+    case property::Device:
+        g_value_set_string(value, settings.device.c_str());
+        return true;
+    case property::Levels:
+        g_value_set_uint(value, p.levels);
+        return true;
+    case property::Tolerance:
+        g_value_set_float(value, p.tolerance);
+        return true;
+    case property::MotionMask:
+        g_value_set_boolean(value, p.motion_mask);
+        return true;
+    case property::EntropyBits:
+        g_value_set_float(value, p.entropy_bits);
+        return true;
+    case property::SigmaXy:
+        g_value_set_uint(value, p.grid.sigma_xy);
+        return true;
+    case property::SigmaLuma:
+        g_value_set_uint(value, p.grid.sigma_luma);
+        return true;
+    case property::SigmaChroma:
+        g_value_set_uint(value, p.grid.sigma_chroma);
+        return true;
+    case property::Lambda:
+        g_value_set_float(value, p.grid.lambda);
+        return true;
+    case property::Iterations:
+        g_value_set_uint(value, p.grid.iterations);
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace dff

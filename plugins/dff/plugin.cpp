@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "aifcompose.h"
+#include "config.h"
+#include "dffdepth.h"
+
+static gboolean plugin_init(GstPlugin *plugin)
+{
+    return GST_ELEMENT_REGISTER(dffdepth, plugin) && GST_ELEMENT_REGISTER(aifcompose, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, dffdepth,
+                  "Depth and all-in-focus pictures from focal stacks", plugin_init, VERSION, GST_LICENSE,
+                  PACKAGE, GST_PACKAGE_ORIGIN)
