@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "config.h"
 
+#include "focalstack/focalstackalign.h"
 #include "focalstack/focalstackdemux.h"
 #include "focalstack/focalstackmux.h"
 
@@ -10,6 +11,7 @@ static gboolean plugin_init(GstPlugin *plugin)
     gboolean registered = FALSE;
     registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
     registered |= GST_ELEMENT_REGISTER(focalstackdemux, plugin);
+    registered |= GST_ELEMENT_REGISTER(focalstackalign, plugin);
     return registered;
 }
 

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/alignment_statistics.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace dff {
+namespace {
+
+GstStructure *to_structure(const PlaneAlignment &plane)
+{
+    const double degrees = plane.warp.rotation() * 180.0 / std::numbers::pi;
+
+    return gst_structure_new("plane", "dx", G_TYPE_DOUBLE, plane.warp.dx, "dy", G_TYPE_DOUBLE, plane.warp.dy,
+                             "scale", G_TYPE_DOUBLE, plane.warp.scale(), "rotation", G_TYPE_DOUBLE, degrees,
+                             "trusted", G_TYPE_BOOLEAN, plane.trusted, nullptr);
+}
+
+} // namespace
+
+void AlignmentStatistics::add(std::vector<PlaneAlignment> planes)
+{
+    stacks_++;
+    untrusted_planes_ += std::ranges::count(planes, false, &PlaneAlignment::trusted);
+    planes_ = std::move(planes);
+}
+
+GstStructure *AlignmentStatistics::to_structure() const
+{
+    GValue planes = G_VALUE_INIT;
+    gst_value_array_init(&planes, static_cast<guint>(planes_.size()));
+    for (const PlaneAlignment &plane : planes_) {
+        GValue value = G_VALUE_INIT;
+        g_value_init(&value, GST_TYPE_STRUCTURE);
+        g_value_take_boxed(&value, dff::to_structure(plane));
+        gst_value_array_append_and_take_value(&planes, &value);
+    }
+
+    GstStructure *structure =
+        gst_structure_new("application/x-focalstackalign-stats", "stacks", G_TYPE_UINT64, stacks_,
+                          "untrusted-planes", G_TYPE_UINT64, untrusted_planes_, nullptr);
+    gst_structure_take_value(structure, "planes", &planes);
+    return structure;
+}
+
+} // namespace dff

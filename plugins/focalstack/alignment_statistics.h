@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "focalstack/stack_aligner.h"
+
+#include <gst/gst.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace dff {
+
+/* What focalstackalign tells of the stacks so far. */
+class AlignmentStatistics {
+public:
+    /* Counts a stack, and keeps how its planes lay. */
+    void add(std::vector<PlaneAlignment> planes);
+
+    /* The property `stats`. */
+    GstStructure *to_structure() const;
+
+private:
+    uint64_t stacks_ = 0;
+    uint64_t untrusted_planes_ = 0;
+    std::vector<PlaneAlignment> planes_;
+};
+
+} // namespace dff

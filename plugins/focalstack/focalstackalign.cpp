@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:element-focalstackalign
+ *
+ * Brings the planes of each focal stack onto its middle plane, number planes / 2: undoes the zoom that comes
+ * with focusing (focus breathing), vibration, and the shake of a hand while the sweep was taken.
+ *
+ * The shift, turn and zoom of each plane are found in its pictures, by following corners between planes
+ * (Lucas-Kanade, RANSAC) and solving for all planes together. A scene without texture shows nothing of the
+ * kind: such planes are not trusted, and go with their neighbours. What parallax does to a scene of some
+ * depth when the camera itself moves cannot be undone by a warp.
+ *
+ * Moved planes are resampled with Lanczos' kernel, since with a softer one noise and sharpness differ from
+ * plane to plane, which is what depth from focus looks at. Size stays, so what moves in over the border is
+ * the picture, reflected there. Planes that lie within 0.02 pixels of their place are copied.
+ *
+ * A stack without times gets those of its caps' frame rate.
+ *
+ * ## Example pipeline
+ * |[
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=60 breathing=0.03 ! focalstackmux ! queue ! focalstackalign !
+ * queue ! dffdepth ! fakesink
+ * ]| computes depth from sweeps whose planes differ in zoom by 3 percent.
+ */
+#include "focalstack/focalstackalign.h"
+
+#include "focalstack/alignment_statistics.h"
+#include "focalstack/stack_aligner.h"
+#include "focalstack/stack_buffer.h"
+#include "focalstack/stack_pictures.h"
+
+#include <optional>
+
+GST_DEBUG_CATEGORY_STATIC(focalstackalign_debug);
+#define GST_CAT_DEFAULT focalstackalign_debug
+
+namespace {
+
+enum class AlignMode { Estimate };
+
+struct FocalStackAlignState {
+    /* Guarded by the sink pad's stream lock. */
+    std::optional<dff::StackPool> pool;
+    guint64 stacks_of_segment = 0;
+
+    /* Guarded by the object's lock. */
+    AlignMode mode = AlignMode::Estimate;
+    dff::AlignmentStatistics statistics;
+    GstClockTime latency = 0;
+};
+
+enum { PROP_MODE = 1, PROP_STATS };
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
+GstStaticPadTemplate source_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
+
+GType align_mode_get_type()
+{
+    static GType type;
+    static const GEnumValue values[] = {
+        {static_cast<int>(AlignMode::Estimate), "Found anew in the pictures of each stack", "estimate"},
+        {0, nullptr, nullptr},
+    };
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, g_enum_register_static("GstFocalStackAlignMode", values));
+    return type;
+}
+
+} // namespace
+
+struct _GstFocalStackAlign {
+    GstBaseTransform parent;
+    FocalStackAlignState *state;
+};
+
+G_DEFINE_FINAL_TYPE(GstFocalStackAlign, gst_focal_stack_align, GST_TYPE_BASE_TRANSFORM)
+GST_ELEMENT_REGISTER_DEFINE(focalstackalign, "focalstackalign", GST_RANK_NONE, GST_TYPE_FOCAL_STACK_ALIGN)
+
+namespace {
+
+class ObjectLock {
+public:
+    explicit ObjectLock(gpointer object) : object_(GST_OBJECT(object)) { GST_OBJECT_LOCK(object_); }
+    ~ObjectLock() { GST_OBJECT_UNLOCK(object_); }
+    ObjectLock(const ObjectLock &) = delete;
+    ObjectLock &operator=(const ObjectLock &) = delete;
+
+private:
+    GstObject *object_;
+};
+
+std::vector<dff::PlaneAlignment> estimate(GstFocalStackAlign *self, const dff::StackPictures &pictures,
+                                          unsigned planes)
+{
+    try {
+        std::vector<cv::Mat> lumas;
+        for (unsigned z = 0; z < planes; z++)
+            lumas.push_back(pictures.component(z, 0));
+        return dff::align_stack(lumas);
+    } catch (const cv::Exception &exception) {
+        GST_WARNING_OBJECT(self, "the stack is left as it is: %s", exception.what());
+        return std::vector<dff::PlaneAlignment>(planes);
+    }
+}
+
+void undo_warps(const dff::StackPictures &from, const dff::StackPictures &to,
+                std::span<const dff::PlaneAlignment> alignments)
+{
+    for (unsigned z = 0; z < alignments.size(); z++) {
+        for (unsigned i = 0; i < from.components(); i++)
+            dff::undo_warp(from.component(z, i), to.component(z, i), alignments[z].warp, from.step(i));
+    }
+}
+
+/* The latency only ever grows, with some room, so that it is seldom announced. */
+void announce_latency(GstFocalStackAlign *self, GstClockTime measured)
+{
+    {
+        const ObjectLock lock(self);
+        if (measured <= self->state->latency)
+            return;
+        self->state->latency = measured + measured / 4;
+    }
+    gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+}
+
+/* A stack that came without a time is taken to be number k since the segment's start. */
+void complete_time(const GstFocalStackInfo &info, guint64 k, GstBuffer *stack)
+{
+    const guint64 numerator = static_cast<guint64>(GST_VIDEO_INFO_FPS_N(&info.frame));
+    const guint64 denominator = static_cast<guint64>(GST_VIDEO_INFO_FPS_D(&info.frame));
+
+    if (GST_BUFFER_PTS_IS_VALID(stack) || numerator == 0)
+        return;
+    GST_BUFFER_PTS(stack) = gst_util_uint64_scale(k, GST_SECOND * denominator, numerator);
+    GST_BUFFER_DURATION(stack) =
+        gst_util_uint64_scale(k + 1, GST_SECOND * denominator, numerator) - GST_BUFFER_PTS(stack);
+}
+
+gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
+{
+    GstFocalStackInfo info;
+
+    if (!gst_focal_stack_info_from_caps(&info, caps))
+        return FALSE;
+    GST_FOCAL_STACK_ALIGN(base)->state->pool.emplace(info);
+    return TRUE;
+}
+
+/* Downstream's buffers are of no use: a stack is one memory with slack at both ends. */
+gboolean decide_allocation(GstBaseTransform *, GstQuery *query)
+{
+    while (gst_query_get_n_allocation_pools(query) > 0)
+        gst_query_remove_nth_allocation_pool(query, 0);
+    return TRUE;
+}
+
+/* Any layout will do. */
+gboolean propose_allocation(GstBaseTransform *, GstQuery *, GstQuery *query)
+{
+    gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+    return TRUE;
+}
+
+GstFlowReturn prepare_output_buffer(GstBaseTransform *base, GstBuffer *input, GstBuffer **output)
+{
+    GstFocalStackAlign *self = GST_FOCAL_STACK_ALIGN(base);
+    dff::BufferPtr stack = self->state->pool->acquire();
+
+    if (!stack) {
+        GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT, ("There is no memory for another focal stack."),
+                          (nullptr));
+        return GST_FLOW_ERROR;
+    }
+    GST_BASE_TRANSFORM_GET_CLASS(base)->copy_metadata(base, input, stack.get());
+    *output = stack.release();
+    return GST_FLOW_OK;
+}
+
+/* The pool's stack has its own layout; all else that is known of the stack holds of the aligned one. */
+gboolean transform_meta(GstBaseTransform *, GstBuffer *, GstMeta *meta, GstBuffer *)
+{
+    return !gst_meta_api_type_has_tag(meta->info->api, g_quark_from_static_string(GST_META_TAG_MEMORY_STR));
+}
+
+GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *output)
+{
+    GstFocalStackAlign *self = GST_FOCAL_STACK_ALIGN(base);
+    const GstFocalStackInfo &info = self->state->pool->info();
+    const gint64 start_us = g_get_monotonic_time();
+    g_autoptr(GError) error = nullptr;
+
+    const auto from = dff::StackPictures::map(info, input, GST_MAP_READ, &error);
+    const auto to = from ? dff::StackPictures::map(info, output, GST_MAP_WRITE, &error) : nullptr;
+    if (!to) {
+        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error->message), (nullptr));
+        return GST_FLOW_ERROR;
+    }
+    std::vector<dff::PlaneAlignment> alignments = estimate(self, *from, info.planes);
+    try {
+        undo_warps(*from, *to, alignments);
+    } catch (const cv::Exception &exception) {
+        GST_ELEMENT_ERROR(self, STREAM, FAILED, ("The planes of the stack cannot be warped."),
+                          ("%s", exception.what()));
+        return GST_FLOW_ERROR;
+    }
+    complete_time(info, self->state->stacks_of_segment++, output);
+    {
+        const ObjectLock lock(self);
+        self->state->statistics.add(std::move(alignments));
+    }
+    announce_latency(self, static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND);
+    return GST_FLOW_OK;
+}
+
+gboolean sink_event(GstBaseTransform *base, GstEvent *event)
+{
+    if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT) {
+        const GstSegment *segment = nullptr;
+        gst_event_parse_segment(event, &segment);
+        GST_FOCAL_STACK_ALIGN(base)->state->stacks_of_segment = 0;
+        if (segment->format != GST_FORMAT_TIME) {
+            GstSegment time;
+            gst_segment_init(&time, GST_FORMAT_TIME);
+            GstEvent *replacement = gst_event_new_segment(&time);
+            gst_event_set_seqnum(replacement, gst_event_get_seqnum(event));
+            gst_event_unref(event);
+            event = replacement;
+        }
+    }
+    return GST_BASE_TRANSFORM_CLASS(gst_focal_stack_align_parent_class)->sink_event(base, event);
+}
+
+gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *query)
+{
+    const gboolean answered =
+        GST_BASE_TRANSFORM_CLASS(gst_focal_stack_align_parent_class)->query(base, direction, query);
+    if (!answered || direction != GST_PAD_SRC || GST_QUERY_TYPE(query) != GST_QUERY_LATENCY)
+        return answered;
+
+    gboolean live = FALSE;
+    GstClockTime least = 0, most = GST_CLOCK_TIME_NONE;
+    gst_query_parse_latency(query, &live, &least, &most);
+    const ObjectLock lock(base);
+    const GstClockTime own = GST_FOCAL_STACK_ALIGN(base)->state->latency;
+    gst_query_set_latency(query, live, least + own, GST_CLOCK_TIME_IS_VALID(most) ? most + own : most);
+    return TRUE;
+}
+
+gboolean start(GstBaseTransform *base)
+{
+    const ObjectLock lock(base);
+    FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(base)->state;
+
+    state->stacks_of_segment = 0;
+    state->statistics = {};
+    state->latency = 0;
+    return TRUE;
+}
+
+gboolean stop(GstBaseTransform *base)
+{
+    GST_FOCAL_STACK_ALIGN(base)->state->pool.reset();
+    return TRUE;
+}
+
+void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
+{
+    const ObjectLock lock(object);
+    switch (id) {
+    case PROP_MODE:
+        GST_FOCAL_STACK_ALIGN(object)->state->mode = static_cast<AlignMode>(g_value_get_enum(value));
+        break;
+    default:
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+    }
+}
+
+void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
+{
+    const ObjectLock lock(object);
+    const FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(object)->state;
+    switch (id) {
+    case PROP_MODE:
+        g_value_set_enum(value, static_cast<int>(state->mode));
+        break;
+    case PROP_STATS:
+        g_value_take_boxed(value, state->statistics.to_structure());
+        break;
+    default:
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+    }
+}
+
+void finalize(GObject *object)
+{
+    delete GST_FOCAL_STACK_ALIGN(object)->state;
+    G_OBJECT_CLASS(gst_focal_stack_align_parent_class)->finalize(object);
+}
+
+void install_properties(GObjectClass *object_class)
+{
+    constexpr auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS);
+    constexpr auto read_only = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
+
+    g_object_class_install_property(
+        object_class, PROP_MODE,
+        g_param_spec_enum("mode", "Mode", "Where the warp of each plane comes from", align_mode_get_type(),
+                          static_cast<int>(AlignMode::Estimate),
+                          static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_READY)));
+    /**
+     * GstFocalStackAlign:stats:
+     *
+     * "stacks" (uint64) were aligned, and in them "untrusted-planes" (uint64) could not be matched. "planes"
+     * is an array with a structure for each plane of the last stack, nearest first, that says where the
+     * picture of the middle plane lies in it: "dx" and "dy" (double), the shift of the centre in pixels,
+     * right and down; "scale" (double), the zoom about the centre; "rotation" (double), degrees clockwise;
+     * "trusted" (boolean), whether this was found in the pictures.
+     */
+    g_object_class_install_property(
+        object_class, PROP_STATS,
+        g_param_spec_boxed(
+            "stats", "Statistics",
+            "Stacks aligned, planes not trusted, and for each plane of the last stack dx and dy "
+            "(pixels), scale, rotation (degrees) and whether they are trusted",
+            GST_TYPE_STRUCTURE, read_only));
+}
+
+} // namespace
+
+static void gst_focal_stack_align_class_init(GstFocalStackAlignClass *klass)
+{
+    GObjectClass *object_class = G_OBJECT_CLASS(klass);
+    GstElementClass *element_class = GST_ELEMENT_CLASS(klass);
+    GstBaseTransformClass *base_class = GST_BASE_TRANSFORM_CLASS(klass);
+
+    GST_DEBUG_CATEGORY_INIT(focalstackalign_debug, "focalstackalign", 0, "Alignment of focal stacks");
+    object_class->set_property = set_property;
+    object_class->get_property = get_property;
+    object_class->finalize = finalize;
+    install_properties(object_class);
+    gst_type_mark_as_plugin_api(align_mode_get_type(), static_cast<GstPluginAPIFlags>(0));
+
+    gst_element_class_add_static_pad_template(element_class, &sink_template);
+    gst_element_class_add_static_pad_template(element_class, &source_template);
+    gst_element_class_set_static_metadata(
+        element_class, "Focal stack aligner", "Filter/Effect/Video",
+        "Undoes focus breathing, vibration and a hand's shake within each focal stack",
+        "The gst-plugins-dff authors");
+
+    base_class->start = start;
+    base_class->stop = stop;
+    base_class->set_caps = set_caps;
+    base_class->sink_event = sink_event;
+    base_class->query = query;
+    base_class->decide_allocation = decide_allocation;
+    base_class->propose_allocation = propose_allocation;
+    base_class->prepare_output_buffer = prepare_output_buffer;
+    base_class->transform_meta = transform_meta;
+    base_class->transform = transform;
+}
+
+static void gst_focal_stack_align_init(GstFocalStackAlign *self)
+{
+    self->state = new FocalStackAlignState;
+}

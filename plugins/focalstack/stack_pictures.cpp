@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/stack_pictures.h"
+
+namespace dff {
+
+std::unique_ptr<StackPictures> StackPictures::map(const GstFocalStackInfo &info, GstBuffer *buffer,
+                                                  GstMapFlags flags, GError **error)
+{
+    std::unique_ptr<StackPictures> pictures(new StackPictures(info, buffer));
+
+    for (guint z = 0; z < info.planes; z++) {
+        Place place;
+        if (!gst_focal_stack_info_locate_plane(&info, buffer, z, place.offset, place.stride, error))
+            return nullptr;
+        pictures->planes_.push_back(place);
+    }
+    if (!gst_buffer_map(buffer, &pictures->map_, flags)) {
+        g_set_error(error, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_FAILED,
+                    "The stack's memory cannot be mapped");
+        return nullptr;
+    }
+    return pictures;
+}
+
+StackPictures::~StackPictures()
+{
+    if (map_.memory)
+        gst_buffer_unmap(buffer_, &map_);
+}
+
+unsigned StackPictures::components() const
+{
+    return GST_VIDEO_INFO_N_PLANES(&info_.frame);
+}
+
+guint StackPictures::first_channel(unsigned component) const
+{
+    gint channels[GST_VIDEO_MAX_COMPONENTS];
+
+    gst_video_format_info_component(info_.frame.finfo, component, channels);
+    return static_cast<guint>(channels[0]);
+}
+
+int StackPictures::step(unsigned component) const
+{
+    return 1 << GST_VIDEO_FORMAT_INFO_W_SUB(info_.frame.finfo, first_channel(component));
+}
+
+cv::Mat StackPictures::component(unsigned plane, unsigned component) const
+{
+    const guint channel = first_channel(component);
+    const int bytes = GST_VIDEO_INFO_COMP_DEPTH(&info_.frame, channel) > 8 ? 2 : 1;
+    const int channels = GST_VIDEO_INFO_COMP_PSTRIDE(&info_.frame, channel) / bytes;
+    const Place &place = planes_[plane];
+
+    return {GST_VIDEO_INFO_COMP_HEIGHT(&info_.frame, channel),
+            GST_VIDEO_INFO_COMP_WIDTH(&info_.frame, channel),
+            CV_MAKETYPE(bytes == 2 ? CV_16U : CV_8U, channels), map_.data + place.offset[component],
+            static_cast<std::size_t>(place.stride[component])};
+}
+
+} // namespace dff
