@@ -69,17 +69,82 @@ gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info)
     return GST_VIDEO_INFO_SIZE(&info->frame) * info->planes;
 }
 
-/* The last byte of a component's last row, which need not be padded to the stride. */
-static gsize component_end(const GstVideoInfo *info, guint plane, gsize offset, gint stride)
+static gsize row_bytes(const GstVideoInfo *info, guint component)
+{
+    return (gsize)GST_VIDEO_INFO_COMP_WIDTH(info, component) * GST_VIDEO_INFO_COMP_PSTRIDE(info, component);
+}
+
+/* Where the last row ends, which need not be padded to the stride; G_MAXSIZE if that is no place in memory.
+ */
+static gsize end_of_rows(const GstVideoInfo *info, guint i, gsize offset, gint stride)
 {
     gint component[GST_VIDEO_MAX_COMPONENTS];
 
-    gst_video_format_info_component(info->finfo, plane, component);
+    gst_video_format_info_component(info->finfo, i, component);
+    const gsize row = row_bytes(info, component[0]);
     const gsize rows = GST_VIDEO_INFO_COMP_HEIGHT(info, component[0]);
-    const gsize row_bytes = (gsize)GST_VIDEO_INFO_COMP_WIDTH(info, component[0]) *
-                            GST_VIDEO_INFO_COMP_PSTRIDE(info, component[0]);
+    gsize end;
 
-    return offset + (rows - 1) * stride + row_bytes;
+    if (stride < 0 || (gsize)stride < row ||
+        !g_size_checked_add(&end, offset, (rows - 1) * (gsize)stride + row))
+        return G_MAXSIZE;
+    return end;
+}
+
+static gboolean fits_caps(const GstVideoMeta *meta, const GstVideoInfo *info)
+{
+    return meta->format == GST_VIDEO_INFO_FORMAT(info) && meta->n_planes == GST_VIDEO_INFO_N_PLANES(info) &&
+           meta->width == (guint)GST_VIDEO_INFO_WIDTH(info) &&
+           meta->height == (guint)GST_VIDEO_INFO_HEIGHT(info);
+}
+
+/* The plane's meta; NULL and no error where the stack has none at all. */
+static const GstVideoMeta *find_meta(const GstFocalStackInfo *info, GstBuffer *buffer, guint plane,
+                                     GError **error)
+{
+    const GstVideoInfo *frame = &info->frame;
+    const GstVideoMeta *meta = gst_buffer_get_video_meta_id(buffer, (gint)plane);
+
+    if (meta && !fits_caps(meta, frame)) {
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The GstVideoMeta of plane %u says %ux%u %s, but the stack's caps say %dx%d %s", plane,
+                    meta->width, meta->height, gst_video_format_to_string(meta->format),
+                    GST_VIDEO_INFO_WIDTH(frame), GST_VIDEO_INFO_HEIGHT(frame), GST_VIDEO_INFO_NAME(frame));
+        return NULL;
+    }
+    if (!meta && gst_buffer_get_meta(buffer, GST_VIDEO_META_API_TYPE))
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The stack has GstVideoMetas, but none for plane %u of %u", plane, info->planes);
+    return meta;
+}
+
+static gboolean size_error(const GstFocalStackInfo *info, gsize size, gsize needed, GError **error)
+{
+    g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                "The stack has %" G_GSIZE_FORMAT
+                " bytes, but its caps (%u planes of %dx%d %s) need %" G_GSIZE_FORMAT,
+                size, info->planes, GST_VIDEO_INFO_WIDTH(&info->frame), GST_VIDEO_INFO_HEIGHT(&info->frame),
+                GST_VIDEO_INFO_NAME(&info->frame), needed);
+    return FALSE;
+}
+
+static gboolean locate_by_meta(const GstFocalStackInfo *info, const GstVideoMeta *meta, guint plane,
+                               gsize size, gsize offset[GST_VIDEO_MAX_PLANES],
+                               gint stride[GST_VIDEO_MAX_PLANES], GError **error)
+{
+    gsize end = 0;
+
+    for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(&info->frame); i++) {
+        offset[i] = meta->offset[i];
+        stride[i] = meta->stride[i];
+        end = MAX(end, end_of_rows(&info->frame, i, offset[i], stride[i]));
+    }
+    if (end == G_MAXSIZE) {
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The GstVideoMeta of plane %u has an impossible stride or offset", plane);
+        return FALSE;
+    }
+    return end <= size || size_error(info, size, end, error);
 }
 
 /**
@@ -91,7 +156,8 @@ static gsize component_end(const GstVideoInfo *info, guint plane, gsize offset, 
  * @stride: (out) (array fixed-size=4): their strides in bytes
  * @error: where an error goes
  *
- * Finds a plane by its GstVideoMeta, or by the default layout where the buffer has none.
+ * Finds a plane by its GstVideoMeta, or by the default layout where the buffer has none; then @buffer must
+ * have exactly the size of a stack.
  *
  * Returns: %FALSE with @error set if the buffer does not hold the plane; the message names both sizes
  */
@@ -101,32 +167,23 @@ gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuf
 {
     g_return_val_if_fail(plane < info->planes, FALSE);
 
-    const GstVideoMeta *meta = gst_buffer_get_video_meta_id(buffer, (gint)plane);
+    GError *mismatch = NULL;
+    const GstVideoMeta *meta = find_meta(info, buffer, plane, &mismatch);
     const gsize size = gst_buffer_get_size(buffer);
-    gsize end = 0;
 
-    if (!meta && gst_buffer_get_video_meta(buffer)) {
-        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
-                    "The stack has GstVideoMetas, but none for plane %u of %u", plane, info->planes);
+    if (mismatch) {
+        g_propagate_error(error, mismatch);
         return FALSE;
     }
+    if (meta)
+        return locate_by_meta(info, meta, plane, size, offset, stride, error);
+
     for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(&info->frame); i++) {
-        const gsize frame = GST_VIDEO_INFO_SIZE(&info->frame) * plane;
-
-        offset[i] = meta ? meta->offset[i] : frame + GST_VIDEO_INFO_PLANE_OFFSET(&info->frame, i);
-        stride[i] = meta ? meta->stride[i] : GST_VIDEO_INFO_PLANE_STRIDE(&info->frame, i);
-        end = MAX(end, component_end(&info->frame, i, offset[i], stride[i]));
+        offset[i] = GST_VIDEO_INFO_SIZE(&info->frame) * plane + GST_VIDEO_INFO_PLANE_OFFSET(&info->frame, i);
+        stride[i] = GST_VIDEO_INFO_PLANE_STRIDE(&info->frame, i);
     }
-    if (end > size) {
-        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
-                    "The stack has %" G_GSIZE_FORMAT
-                    " bytes, but its caps (%u planes of %dx%d %s) need %" G_GSIZE_FORMAT,
-                    size, info->planes, GST_VIDEO_INFO_WIDTH(&info->frame),
-                    GST_VIDEO_INFO_HEIGHT(&info->frame), GST_VIDEO_INFO_NAME(&info->frame),
-                    meta ? end : gst_focal_stack_info_get_size(info));
-        return FALSE;
-    }
-    return TRUE;
+    return size == gst_focal_stack_info_get_size(info) ||
+           size_error(info, size, gst_focal_stack_info_get_size(info), error);
 }
 
 /**
