@@ -27,6 +27,8 @@
 #include "lenssweeptestsrc.h"
 
 #include "live_pacer.h"
+#include "stream_pad.h"
+#include "test_settings.h"
 #include "test_stream.h"
 
 #include <exception>
@@ -44,28 +46,10 @@ static GstStaticPadTemplate src_template =
 static GstStaticPadTemplate depth_template =
     GST_STATIC_PAD_TEMPLATE("depth", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(DEPTH_CAPS));
 
-namespace {
-
-enum {
-    PROP_RATE = FIRST_OWN_PROPERTY,
-    PROP_SCENE,
-    PROP_IMAGE,
-    PROP_DEPTH_MAP,
-    PROP_BLUR_STEP,
-    PROP_NOISE,
-    PROP_BREATHING,
-    PROP_JITTER,
-    PROP_SEED,
-    PROP_IS_LIVE,
-    PROP_NUM_BUFFERS,
-};
-
-} // namespace
-
 struct GstLensSweepTestSrcState {
     /* Guarded by the object lock. */
     TestSettings settings;
-    bool scene_changed = false;
+    bool settings_changed = false;
     bool eos_wanted = false;
     std::stop_source stop; /* of the rendering */
     GstPad *depth_pad = nullptr;
@@ -89,49 +73,13 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(lenssweeptestsrc, "lenssweeptestsrc", GST_
                                                               "lenssweeptestsrc", 0,
                                                               "simulated camera with a swept focus"))
 
-/* Sends what must come before a pad's first buffer, once. */
-static void begin_stream(GstLensSweepTestSrc *self, GstPad *pad, const gchar *name, guint group)
-{
-    g_autoptr(GstEvent) begun = gst_pad_get_sticky_event(pad, GST_EVENT_STREAM_START, 0);
-    if (begun)
-        return;
-    g_autofree gchar *id = gst_pad_create_stream_id(pad, GST_ELEMENT(self), name);
-    GstEvent *event = gst_event_new_stream_start(id);
-    gst_event_set_group_id(event, group);
-    gst_pad_push_event(pad, event);
-}
-
-static void begin_segment(GstPad *pad)
-{
-    g_autoptr(GstEvent) begun = gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0);
-    if (begun)
-        return;
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_pad_push_event(pad, gst_event_new_segment(&segment));
-}
-
-static bool change_caps(GstPad *pad, GstCaps *caps)
-{
-    g_autoptr(GstCaps) current = gst_pad_get_current_caps(pad);
-    return (current && gst_caps_is_equal(current, caps)) || gst_pad_set_caps(pad, caps);
-}
-
-static guint group_of(GstPad *pad)
-{
-    guint group = GST_GROUP_ID_INVALID;
-    g_autoptr(GstEvent) event = gst_pad_get_sticky_event(pad, GST_EVENT_STREAM_START, 0);
-    if (event)
-        gst_event_parse_group_id(event, &group);
-    return group;
-}
-
 static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     g_autoptr(GstCaps) templ = gst_pad_get_pad_template_caps(self->src_pad);
     g_autoptr(GstCaps) possible = stream.caps(templ);
-    g_autoptr(GstCaps) common = gst_pad_peer_query_caps(self->src_pad, possible);
+    g_autoptr(GstCaps) wanted = gst_pad_peer_query_caps(self->src_pad, possible);
+    g_autoptr(GstCaps) common = gst_caps_intersect_full(possible, wanted, GST_CAPS_INTERSECT_FIRST);
     if (gst_caps_is_empty(common)) {
         GST_ELEMENT_ERROR(
             self, STREAM, FORMAT,
@@ -184,7 +132,7 @@ static GstFlowReturn render(GstLensSweepTestSrc *self)
 static GstFlowReturn push_depth(GstLensSweepTestSrc *self, GstPad *pad)
 {
     TestStream &stream = *self->state->stream;
-    begin_stream(self, pad, "depth", group_of(self->src_pad));
+    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
     g_autoptr(GstCaps) caps = stream.depth_caps();
     change_caps(pad, caps);
     begin_segment(pad);
@@ -205,9 +153,9 @@ static GstPad *ref_depth_pad(GstLensSweepTestSrc *self)
 static void take_changes(GstLensSweepTestSrc *self)
 {
     GST_OBJECT_LOCK(self);
-    if (self->state->scene_changed)
+    if (self->state->settings_changed)
         self->state->stream->set_scene(self->state->settings.scene);
-    self->state->scene_changed = false;
+    self->state->settings_changed = false;
     GST_OBJECT_UNLOCK(self);
 }
 
@@ -223,7 +171,7 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     LivePacer &pacer = self->state->pacer;
-    begin_stream(self, self->src_pad, "src", gst_util_group_id_next());
+    begin_stream(GST_ELEMENT(self), self->src_pad, "src", gst_util_group_id_next());
     if (stream.is_live() && !pacer.wait_until_playing())
         return GST_FLOW_FLUSHING;
     if (eos_is_due(self))
@@ -258,7 +206,7 @@ static void end_streams(GstLensSweepTestSrc *self)
 {
     g_autoptr(GstPad) depth_pad = ref_depth_pad(self);
     if (depth_pad) {
-        begin_stream(self, depth_pad, "depth", group_of(self->src_pad));
+        begin_stream(GST_ELEMENT(self), depth_pad, "depth", group_of(self->src_pad));
         gst_pad_push_event(depth_pad, gst_event_new_eos());
     }
     gst_pad_push_event(self->src_pad, gst_event_new_eos());
@@ -311,7 +259,7 @@ static bool start(GstLensSweepTestSrc *self)
 {
     GST_OBJECT_LOCK(self);
     const TestSettings settings = self->state->settings;
-    self->state->scene_changed = false;
+    self->state->settings_changed = false;
     self->state->eos_wanted = false;
     self->state->stop = std::stop_source();
     GST_OBJECT_UNLOCK(self);
@@ -383,109 +331,25 @@ static void release_pad(GstElement *element, GstPad *pad)
     gst_element_remove_pad(element, pad);
 }
 
-static void set_string(std::string &target, const GValue *value)
-{
-    const gchar *text = g_value_get_string(value);
-    target = text ? text : "";
-}
-
-/* False if the id is not one of the scene's. */
-static bool set_scene_property(TestScene &scene, guint id, const GValue *value)
-{
-    switch (id) {
-    case PROP_SCENE:
-        scene.scene = static_cast<GstLensSweepTestScene>(g_value_get_enum(value));
-        return true;
-    case PROP_IMAGE:
-        set_string(scene.image, value);
-        return true;
-    case PROP_DEPTH_MAP:
-        set_string(scene.depth_map, value);
-        return true;
-    case PROP_BLUR_STEP:
-        scene.blur_step = g_value_get_double(value);
-        return true;
-    case PROP_NOISE:
-        set_string(scene.noise, value);
-        return true;
-    case PROP_BREATHING:
-        scene.breathing = g_value_get_double(value);
-        return true;
-    case PROP_JITTER:
-        scene.jitter = g_value_get_double(value);
-        return true;
-    case PROP_SEED:
-        scene.seed = g_value_get_uint64(value);
-        return true;
-    default:
-        return false;
-    }
-}
-
-static bool get_scene_property(const TestScene &scene, guint id, GValue *value)
-{
-    switch (id) {
-    case PROP_SCENE:
-        g_value_set_enum(value, scene.scene);
-        return true;
-    case PROP_IMAGE:
-        g_value_set_string(value, scene.image.c_str());
-        return true;
-    case PROP_DEPTH_MAP:
-        g_value_set_string(value, scene.depth_map.c_str());
-        return true;
-    case PROP_BLUR_STEP:
-        g_value_set_double(value, scene.blur_step);
-        return true;
-    case PROP_NOISE:
-        g_value_set_string(value, scene.noise.c_str());
-        return true;
-    case PROP_BREATHING:
-        g_value_set_double(value, scene.breathing);
-        return true;
-    case PROP_JITTER:
-        g_value_set_double(value, scene.jitter);
-        return true;
-    case PROP_SEED:
-        g_value_set_uint64(value, scene.seed);
-        return true;
-    default:
-        return false;
-    }
-}
-
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(object);
-    TestSettings &settings = self->state->settings;
     GST_OBJECT_LOCK(self);
-    if (set_scene_property(settings.scene, id, value))
-        self->state->scene_changed = true;
-    else if (id == PROP_RATE)
-        settings.rate = g_value_get_double(value);
-    else if (id == PROP_IS_LIVE)
-        settings.is_live = g_value_get_boolean(value);
-    else if (id == PROP_NUM_BUFFERS)
-        settings.num_buffers = g_value_get_int(value);
-    else if (!set_sweep_property(settings.sweep, id, value))
-        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    const bool known = set_test_property(self->state->settings, id, value);
+    self->state->settings_changed = true;
     GST_OBJECT_UNLOCK(self);
+    if (!known)
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
 static void get_property(GObject *object, guint id, GValue *value, GParamSpec *pspec)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(object);
-    const TestSettings &settings = self->state->settings;
     GST_OBJECT_LOCK(self);
-    if (id == PROP_RATE)
-        g_value_set_double(value, settings.rate);
-    else if (id == PROP_IS_LIVE)
-        g_value_set_boolean(value, settings.is_live);
-    else if (id == PROP_NUM_BUFFERS)
-        g_value_set_int(value, settings.num_buffers);
-    else if (!get_scene_property(settings.scene, id, value) && !get_sweep_property(settings.sweep, id, value))
-        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
+    const bool known = get_test_property(self->state->settings, id, value);
     GST_OBJECT_UNLOCK(self);
+    if (!known)
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
 static void finalize(GObject *object)
@@ -504,58 +368,6 @@ static void gst_lens_sweep_test_src_init(GstLensSweepTestSrc *self)
     GST_OBJECT_FLAG_SET(self, GST_ELEMENT_FLAG_SOURCE);
 }
 
-static void install_properties(GObjectClass *klass)
-{
-    constexpr auto ready =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
-    /* Changes are seen from the next sweep on. */
-    constexpr auto playing =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
-    const TestSettings defaults;
-
-    install_sweep_properties(klass);
-    const auto install = [klass](guint id, GParamSpec *spec) {
-        g_object_class_install_property(klass, id, spec);
-    };
-    install(PROP_RATE,
-            g_param_spec_double("rate", "Rate", "Sweeps per second", 0.01, 1000.0, defaults.rate, ready));
-    install(PROP_SCENE, g_param_spec_enum("scene", "Scene", "What stands before the camera",
-                                          GST_TYPE_LENS_SWEEP_TEST_SCENE, defaults.scene.scene, playing));
-    install(PROP_IMAGE,
-            g_param_spec_string("image", "Image", "Path of the sharp picture for scene=files", "", playing));
-    install(PROP_DEPTH_MAP,
-            g_param_spec_string("depth-map", "Depth map",
-                                "Path of the disparity map for scene=files: one channel of 8 or 16 bits, the "
-                                "image's size, larger is nearer, 0 is unknown; the 0.2 and 99.8 percentiles "
-                                "become the ends of the sweep",
-                                "", playing));
-    install(PROP_BLUR_STEP,
-            g_param_spec_double("blur-step", "Blur step",
-                                "Change of the circle of confusion's diameter from plane to plane, in pixels",
-                                0.0, 100.0, defaults.scene.blur_step, playing));
-    install(PROP_NOISE,
-            g_param_spec_string("noise", "Noise",
-                                "Noise of the sensor: none, mild (0.05,1), moderate (0.2,2), strong (1,5) or "
-                                "GAIN,READ for the variance GAIN * value + READ^2 of 8-bit values",
-                                defaults.scene.noise.c_str(), playing));
-    install(PROP_BREATHING,
-            g_param_spec_double(
-                "breathing", "Breathing",
-                "Magnification of the last plane less that of the first, about the picture's centre", -0.5,
-                0.5, defaults.scene.breathing, playing));
-    install(PROP_JITTER,
-            g_param_spec_double("jitter", "Jitter",
-                                "Root mean square of each plane's shift along x and y, in pixels", 0.0, 100.0,
-                                defaults.scene.jitter, playing));
-    install(PROP_SEED, g_param_spec_uint64("seed", "Seed", "Of textures, noise and jitter", 0, G_MAXUINT64,
-                                           defaults.scene.seed, playing));
-    install(PROP_IS_LIVE, g_param_spec_boolean("is-live", "Is live", "Send each frame when its exposure ends",
-                                               defaults.is_live, ready));
-    install(PROP_NUM_BUFFERS, g_param_spec_int("num-buffers", "Number of buffers",
-                                               "Frames to send before the end of the stream; -1 is no end",
-                                               -1, G_MAXINT, defaults.num_buffers, ready));
-}
-
 static void gst_lens_sweep_test_src_class_init(GstLensSweepTestSrcClass *klass)
 {
     auto *object_class = G_OBJECT_CLASS(klass);
@@ -564,7 +376,7 @@ static void gst_lens_sweep_test_src_class_init(GstLensSweepTestSrcClass *klass)
     object_class->set_property = set_property;
     object_class->get_property = get_property;
     object_class->finalize = finalize;
-    install_properties(object_class);
+    install_test_properties(object_class);
 
     element_class->change_state = change_state;
     element_class->send_event = send_event;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/scene/swept_camera.h"
+#include "picture_converter.h"
 
 #include <gst/video/video.h>
 #include <memory>
@@ -31,7 +32,16 @@ private:
     };
     using Buffer = std::unique_ptr<GstBuffer, BufferUnref>;
 
+    size_t index(guint64 sweep, guint plane) const;
+    GstBuffer *moving_frame(guint64 sweep, guint plane) const;
+    GstBuffer *make_depth(guint64 sweep) const;
+
     dff::SweptCamera camera_;
-    std::vector<Buffer> frames_; /* plane after plane of one realisation after the other */
-    Buffer depth_;
+    PictureConverter converter_;
+    GstVideoInfo depth_info_;
+    /* Plane after plane of one realisation of the noise after the other: buffers if nothing moves, else the
+     * pictures that each frame begins with. */
+    std::vector<Buffer> frames_;
+    std::vector<cv::Mat3b> backgrounds_;
+    Buffer depth_; /* if nothing moves */
 };

@@ -66,6 +66,7 @@ dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
                                    const std::stop_token &stop) const
 {
     check();
-    const dff::SweptCameraSettings settings{plan, blur_step, parse_noise(noise), breathing, jitter, seed};
+    const dff::SweptCameraSettings settings{plan,   blur_step, parse_noise(noise), motion, breathing,
+                                            jitter, seed};
     return {make(size, stop), settings, stop};
 }

@@ -25,9 +25,12 @@ struct TestScene {
     std::string depth_map;
     gdouble blur_step = 2.0;
     std::string noise = "none";
+    gdouble motion = 0.0;
     gdouble breathing = 0.0;
     gdouble jitter = 0.0;
     guint64 seed = 0;
+
+    bool operator==(const TestScene &) const = default;
 
     /* Throws std::invalid_argument or std::runtime_error, with a message for the user, if a property cannot
      * be used. Reads no file. */

@@ -58,13 +58,21 @@ GstClockTime TestStream::frame_duration() const
     return time_of(first_frame_ + 1) - first_time_;
 }
 
-GstCaps *TestStream::caps(GstCaps *allowed) const
+GstCaps *TestStream::caps(const GstCaps *allowed) const
 {
-    GstCaps *caps = gst_caps_copy(allowed);
     gint frames_n = 0;
     gint frames_d = 1;
     gst_util_fraction_multiply(rate_n_, rate_d_, static_cast<gint>(plan_.planes()), 1, &frames_n, &frames_d);
-    gst_caps_set_simple(caps, "framerate", GST_TYPE_FRACTION, frames_n, frames_d, nullptr);
+    /* One structure a format: an intersection keeps the order of structures. */
+    const GstStructure *structure = gst_caps_get_structure(allowed, 0);
+    const GValue *formats = gst_structure_get_value(structure, "format");
+    GstCaps *caps = gst_caps_new_empty();
+    for (guint i = 0; i < gst_value_list_get_size(formats); i++) {
+        GstStructure *copy = gst_structure_copy(structure);
+        gst_structure_set_value(copy, "format", gst_value_list_get_value(formats, i));
+        gst_structure_set(copy, "framerate", GST_TYPE_FRACTION, frames_n, frames_d, nullptr);
+        gst_caps_append_structure(caps, copy);
+    }
     return caps;
 }
 
@@ -90,6 +98,8 @@ void TestStream::set_format(const GstVideoInfo &info)
 
 void TestStream::set_scene(const TestScene &scene)
 {
+    if (settings_.scene == scene)
+        return;
     settings_.scene = scene;
     pictures_.reset();
 }

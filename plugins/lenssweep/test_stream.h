@@ -3,22 +3,12 @@
 #pragma once
 
 #include "simulated_sweep.h"
-#include "sweep_properties.h"
-#include "test_scene.h"
+#include "test_settings.h"
 
 #include <gst/video/video.h>
 #include <memory>
 #include <optional>
 #include <stop_token>
-
-/* The properties of lenssweeptestsrc. */
-struct TestSettings {
-    SweepProperties sweep;
-    gdouble rate = 26.0;
-    TestScene scene;
-    gboolean is_live = FALSE;
-    gint num_buffers = -1;
-};
 
 /* The frames of lenssweeptestsrc one after the other, with their times and metas. */
 class TestStream {
@@ -32,8 +22,8 @@ public:
     bool is_rendered() const { return pictures_ != nullptr; }
     GstClockTime frame_duration() const;
 
-    /* What the stream can be: all formats of `allowed` at the one frame rate. */
-    GstCaps *caps(GstCaps *allowed) const;
+    /* What the stream can be of `allowed`, at the one frame rate, the format that `allowed` names first first. */
+    GstCaps *caps(const GstCaps *allowed) const;
 
     /* Reduces caps to one format and size, the image's own if it can be. Throws if the image cannot be read.
      */

@@ -6,13 +6,19 @@
 #include "optics/depth_scale.h"
 
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace dff {
 
 namespace {
 
 /* Seeds are drawn per use, so that a change to one leaves the others alone. */
-enum SeedUse : uint64_t { jitter_seed = 1, noise_seed = 2 };
+enum SeedUse : uint64_t { jitter_seed = 1, noise_seed = 2, ball_seed = 3 };
+
+uint16_t depth_pixel(double depth)
+{
+    return static_cast<uint16_t>(1 + cvRound((DepthScale::max_pixel - 1) * depth));
+}
 
 } // namespace
 
@@ -20,47 +26,65 @@ SweptCamera::SweptCamera(Scene scene, SweptCameraSettings settings, const std::s
     : scene_(std::move(scene)), settings_(std::move(settings)),
       renderer_(scene_, settings_.plan.planes(), settings_.blur_step, stop)
 {
+    if (settings_.motion == 0.0)
+        return;
+    std::vector<PlaneView> views;
+    for (unsigned plane = 0; plane < plan().planes(); plane++)
+        views.push_back(view(plane));
+    overlay_.emplace(renderer_, MovingBall(size(), settings_.motion, mix_seed(settings_.seed, ball_seed)),
+                     std::move(views), plan().planes() - 1.0, stop);
 }
 
-/* Planes need not be even in dioptres; the renderer's plane positions are. */
-double SweptCamera::focus(unsigned plane) const
+PlaneView SweptCamera::view(unsigned plane) const
 {
-    const SweepPlan &plan = settings_.plan;
-    return (plan.near() - plan.power(plane)) / (plan.near() - plan.far()) * (plan.planes() - 1);
-}
-
-cv::Matx23d SweptCamera::warp(unsigned plane) const
-{
-    const double magnification = 1.0 + settings_.breathing * (plane / (plan().planes() - 1.0) - 0.5);
+    /* Planes need not be even in dioptres; the renderer's plane positions are. */
+    const double last = plan().planes() - 1.0;
+    const double focus = (plan().near() - plan().power(plane)) / (plan().near() - plan().far()) * last;
+    const double magnification = 1.0 + settings_.breathing * (plane / last - 0.5);
     cv::RNG random(mix_seed(mix_seed(settings_.seed, jitter_seed), plane));
     const double x = (size().width - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);
     const double y = (size().height - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);
-    return {magnification, 0.0, x, 0.0, magnification, y};
+    return {focus, {magnification, 0.0, x, 0.0, magnification, y}};
+}
+
+double SweptCamera::time(uint64_t sweep, double plane) const
+{
+    return static_cast<double>(sweep * plan().planes()) + plane;
 }
 
 cv::Mat3f SweptCamera::expose(unsigned plane, const std::stop_token &stop) const
 {
-    cv::Mat3f picture = renderer_.render(focus(plane), stop);
-    if (settings_.breathing == 0.0 && settings_.jitter == 0.0)
-        return picture;
-    cv::Mat3f warped;
-    cv::warpAffine(picture, warped, warp(plane), size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
-    return warped;
+    const PlaneView seen = view(plane);
+    return warp_picture(renderer_.render(seen.focus, stop), seen);
 }
 
-cv::Mat3b SweptCamera::digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t frame) const
+PicturePatch SweptCamera::expose_motion(uint64_t sweep, unsigned plane) const
+{
+    return overlay_->patch(plane, time(sweep, plane));
+}
+
+cv::Mat3b SweptCamera::digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t realisation) const
 {
     const uint64_t seed = mix_seed(mix_seed(settings_.seed, noise_seed), plane);
-    return settings_.noise.digitise(exposed, mix_seed(seed, frame));
+    return settings_.noise.digitise(exposed, mix_seed(seed, realisation));
 }
 
-cv::Mat1w SweptCamera::depth_map() const
+cv::Mat1w SweptCamera::depth_map(uint64_t sweep) const
 {
-    cv::Mat1w map;
-    constexpr double steps = DepthScale::max_pixel - 1;
-    scene_.depth.convertTo(map, CV_16U, steps, 1.0);
+    cv::Mat1w map(size());
+    for (int y = 0; y < map.rows; y++)
+        for (int x = 0; x < map.cols; x++)
+            map(y, x) = depth_pixel(scene_.depth(y, x));
     if (!scene_.known.empty())
         map.setTo(DepthScale::no_value, scene_.known == 0);
+    if (!has_motion())
+        return map;
+    const MovingBall &ball = overlay_->ball();
+    const cv::Point2d center = ball.center(time(sweep, (plan().planes() - 1) / 2.0));
+    cv::Mat1b covered(size(), uchar{0});
+    cv::circle(covered, center, cvRound(ball.radius()), 255, cv::FILLED);
+    covered.setTo(0, scene_.depth < MovingBall::depth);
+    map.setTo(depth_pixel(MovingBall::depth), covered);
     return map;
 }
 

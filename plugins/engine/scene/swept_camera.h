@@ -2,14 +2,15 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/scene/moving_overlay.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/sensor_noise.h"
 #include "engine/scene/thin_lens_renderer.h"
 #include "optics/sweep_plan.h"
 
 #include <cstdint>
+#include <optional>
 #include <stop_token>
-#include <vector>
 
 namespace dff {
 
@@ -18,6 +19,7 @@ struct SweptCameraSettings {
     SweepPlan plan = SweepPlan::even(6, 5.0, 0.0);
     double blur_step = 2.0; /* mean change of the circle of confusion from plane to plane, pixels */
     SensorNoise noise;
+    double motion = 0.0;    /* pixels a ball flies from plane to plane, 0: there is no ball */
     double breathing = 0.0; /* magnification of the last plane minus that of the first */
     double jitter = 0.0;    /* root mean square of each plane's shift along x and y, pixels */
     uint64_t seed = 0;
@@ -34,23 +36,29 @@ public:
     const SweepPlan &plan() const { return settings_.plan; }
     cv::Size size() const { return scene_.size(); }
     bool noisy() const { return !settings_.noise.silent(); }
+    bool has_motion() const { return overlay_.has_value(); }
 
-    /* What the lens throws on the sensor in this plane, in 8-bit values that are not rounded. */
+    /* What the lens throws on the sensor in this plane of each sweep, without what moves. */
     cv::Mat3f expose(unsigned plane, const std::stop_token &stop = {}) const;
 
-    /* The sensor's picture of it: `frame` numbers independent realisations of the noise. */
-    cv::Mat3b digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t frame) const;
+    /* What moves, and all around it that it blurs into; only if has_motion(). */
+    PicturePatch expose_motion(uint64_t sweep, unsigned plane) const;
 
-    /* The true depth: pixel = 1 + round(65534 (near - d) / (near - far)), 0 where it is not known. */
-    cv::Mat1w depth_map() const;
+    /* The sensor's picture of it: `realisation` numbers independent draws of the noise. */
+    cv::Mat3b digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t realisation) const;
+
+    /* The true depth: pixel = 1 + round(65534 (near - d) / (near - far)), 0 where it is not known. What moves
+     * stands where it is in the middle of the sweep. */
+    cv::Mat1w depth_map(uint64_t sweep) const;
 
 private:
-    double focus(unsigned plane) const;
-    cv::Matx23d warp(unsigned plane) const;
+    PlaneView view(unsigned plane) const;
+    double time(uint64_t sweep, double plane) const;
 
     Scene scene_;
     SweptCameraSettings settings_;
     ThinLensRenderer renderer_;
+    std::optional<MovingOverlay> overlay_;
 };
 
 } // namespace dff

@@ -88,35 +88,37 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
     tiles_ = cut_scene(scene.color, layers_of(scene.depth, planes), disk_reach(largest), stop);
 }
 
-double ThinLensRenderer::diameter(int layer, double z) const
+void ThinLensRenderer::render_tile(const SceneTile &tile, const Layers &layers,
+                                   const std::vector<cv::Mat1f> &kernels, cv::Mat4f &picture) const
 {
-    return blur_step_ * std::abs(layer / layers_per_plane - z);
+    if (layers.farthest == farthest_)
+        fill(picture(tile.where), sharp_(tile.where));
+    for (const LayerPatch &patch : tile.patches) {
+        if (patch.layer < layers.nearest || patch.layer > layers.farthest)
+            continue;
+        const cv::Rect touched = patch.where & tile.where;
+        const cv::Mat4f blurred = blur_patch(patch, kernels[static_cast<size_t>(patch.layer)]);
+        const cv::Mat4f layer = blurred(touched - patch.where.tl());
+        if (patch.layer == farthest_)
+            paint(picture(touched), layer);
+        else
+            lay_over(picture(touched), layer);
+    }
 }
 
-cv::Mat4f ThinLensRenderer::composite(double z, int nearest, int farthest, const std::stop_token &stop) const
+cv::Mat4f ThinLensRenderer::composite(double z, const Layers &layers, const cv::Rect &region,
+                                      const std::stop_token &stop) const
 {
     std::vector<cv::Mat1f> kernels;
     for (int layer = 0; layer <= farthest_; layer++)
-        kernels.push_back(disk_kernel(diameter(layer, z)));
+        kernels.push_back(disk_kernel(blur_diameter(layer / layers_per_plane, z)));
 
     cv::Mat4f picture(size(), cv::Vec4f());
-    const bool opaque = farthest == farthest_;
     cv::parallel_for_(cv::Range(0, static_cast<int>(tiles_.size())), [&](const cv::Range &range) {
         for (int i = range.start; i < range.end && !stop.stop_requested(); i++) {
             const SceneTile &tile = tiles_[static_cast<size_t>(i)];
-            if (opaque)
-                fill(picture(tile.where), sharp_(tile.where));
-            for (const LayerPatch &patch : tile.patches) {
-                if (patch.layer < nearest || patch.layer > farthest)
-                    continue;
-                const cv::Rect touched = patch.where & tile.where;
-                const cv::Mat4f layer =
-                    blur_patch(patch, kernels[static_cast<size_t>(patch.layer)])(touched - patch.where.tl());
-                if (patch.layer == farthest_)
-                    paint(picture(touched), layer);
-                else
-                    lay_over(picture(touched), layer);
-            }
+            if (!(tile.where & region).empty())
+                render_tile(tile, layers, kernels, picture);
         }
     });
     return picture;
@@ -125,18 +127,20 @@ cv::Mat4f ThinLensRenderer::composite(double z, int nearest, int farthest, const
 cv::Mat3f ThinLensRenderer::render(double z, const std::stop_token &stop) const
 {
     cv::Mat3f picture;
-    cv::cvtColor(composite(z, 0, farthest_, stop), picture, cv::COLOR_RGBA2RGB);
+    cv::cvtColor(composite(z, {0, farthest_}, whole(), stop), picture, cv::COLOR_RGBA2RGB);
     return picture;
 }
 
-cv::Mat4f ThinLensRenderer::render_behind(double z, double u, const std::stop_token &stop) const
+cv::Mat4f ThinLensRenderer::render_behind(double z, double u, const cv::Rect &region,
+                                          const std::stop_token &stop) const
 {
-    return composite(z, layer_of(u), farthest_, stop);
+    return composite(z, {layer_of(u), farthest_}, region, stop);
 }
 
-cv::Mat4f ThinLensRenderer::render_before(double z, double u, const std::stop_token &stop) const
+cv::Mat4f ThinLensRenderer::render_before(double z, double u, const cv::Rect &region,
+                                          const std::stop_token &stop) const
 {
-    return composite(z, 0, layer_of(u) - 1, stop);
+    return composite(z, {0, layer_of(u) - 1}, region, stop);
 }
 
 } // namespace dff

@@ -5,6 +5,7 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_tiles.h"
 
+#include <cmath>
 #include <stop_token>
 #include <vector>
 
@@ -30,13 +31,26 @@ public:
     cv::Mat3f render(double z, const std::stop_token &stop = {}) const;
 
     /* What lies at plane position u or behind it, and what lies in front, as premultiplied R, G, B and alpha
-     * in 0..1; another object goes between the two. */
-    cv::Mat4f render_behind(double z, double u, const std::stop_token &stop = {}) const;
-    cv::Mat4f render_before(double z, double u, const std::stop_token &stop = {}) const;
+     * in 0..1; another object goes between the two. Only `region` of the picture is sure to be rendered. */
+    cv::Mat4f render_behind(double z, double u, const cv::Rect &region,
+                            const std::stop_token &stop = {}) const;
+    cv::Mat4f render_before(double z, double u, const cv::Rect &region,
+                            const std::stop_token &stop = {}) const;
+
+    /* Diameter in pixels of the circle of confusion of plane position u. */
+    double blur_diameter(double u, double z) const { return blur_step_ * std::abs(u - z); }
 
 private:
-    cv::Mat4f composite(double z, int nearest, int farthest, const std::stop_token &stop) const;
-    double diameter(int layer, double z) const;
+    struct Layers {
+        int nearest;
+        int farthest;
+    };
+
+    cv::Mat4f composite(double z, const Layers &layers, const cv::Rect &region,
+                        const std::stop_token &stop) const;
+    void render_tile(const SceneTile &tile, const Layers &layers, const std::vector<cv::Mat1f> &kernels,
+                     cv::Mat4f &picture) const;
+    cv::Rect whole() const { return {{}, size()}; }
 
     cv::Mat3b sharp_;
     double blur_step_;

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include <gst/gst.h>
+
+/* What a source pad sends before its first buffer; each is sent unless the pad has sent it before. */
+void begin_stream(GstElement *element, GstPad *pad, const gchar *name, guint group);
+void begin_segment(GstPad *pad);
+
+/* False if the peer refuses the caps. */
+bool change_caps(GstPad *pad, GstCaps *caps);
+
+/* The group that begin_stream() was given. */
+guint group_of(GstPad *pad);

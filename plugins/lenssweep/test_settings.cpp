@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "test_settings.h"
+
+#include <gst/gst.h>
+
+namespace {
+
+enum {
+    PROP_RATE = FIRST_OWN_PROPERTY,
+    PROP_SCENE,
+    PROP_IMAGE,
+    PROP_DEPTH_MAP,
+    PROP_BLUR_STEP,
+    PROP_NOISE,
+    PROP_MOTION,
+    PROP_BREATHING,
+    PROP_JITTER,
+    PROP_SEED,
+    PROP_IS_LIVE,
+    PROP_NUM_BUFFERS,
+};
+
+void set_string(std::string &target, const GValue *value)
+{
+    const gchar *text = g_value_get_string(value);
+    target = text ? text : "";
+}
+
+/* False if the id is not one of the scene's. */
+bool set_scene_property(TestScene &scene, guint id, const GValue *value)
+{
+    switch (id) {
+    case PROP_SCENE:
+        scene.scene = static_cast<GstLensSweepTestScene>(g_value_get_enum(value));
+        return true;
+    case PROP_IMAGE:
+        set_string(scene.image, value);
+        return true;
+    case PROP_DEPTH_MAP:
+        set_string(scene.depth_map, value);
+        return true;
+    case PROP_BLUR_STEP:
+        scene.blur_step = g_value_get_double(value);
+        return true;
+    case PROP_NOISE:
+        set_string(scene.noise, value);
+        return true;
+    case PROP_MOTION:
+        scene.motion = g_value_get_double(value);
+        return true;
+    case PROP_BREATHING:
+        scene.breathing = g_value_get_double(value);
+        return true;
+    case PROP_JITTER:
+        scene.jitter = g_value_get_double(value);
+        return true;
+    case PROP_SEED:
+        scene.seed = g_value_get_uint64(value);
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool get_scene_property(const TestScene &scene, guint id, GValue *value)
+{
+    switch (id) {
+    case PROP_SCENE:
+        g_value_set_enum(value, scene.scene);
+        return true;
+    case PROP_IMAGE:
+        g_value_set_string(value, scene.image.c_str());
+        return true;
+    case PROP_DEPTH_MAP:
+        g_value_set_string(value, scene.depth_map.c_str());
+        return true;
+    case PROP_BLUR_STEP:
+        g_value_set_double(value, scene.blur_step);
+        return true;
+    case PROP_NOISE:
+        g_value_set_string(value, scene.noise.c_str());
+        return true;
+    case PROP_MOTION:
+        g_value_set_double(value, scene.motion);
+        return true;
+    case PROP_BREATHING:
+        g_value_set_double(value, scene.breathing);
+        return true;
+    case PROP_JITTER:
+        g_value_set_double(value, scene.jitter);
+        return true;
+    case PROP_SEED:
+        g_value_set_uint64(value, scene.seed);
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace
+
+bool set_test_property(TestSettings &settings, guint id, const GValue *value)
+{
+    switch (id) {
+    case PROP_RATE:
+        settings.rate = g_value_get_double(value);
+        return true;
+    case PROP_IS_LIVE:
+        settings.is_live = g_value_get_boolean(value);
+        return true;
+    case PROP_NUM_BUFFERS:
+        settings.num_buffers = g_value_get_int(value);
+        return true;
+    default:
+        return set_scene_property(settings.scene, id, value) || set_sweep_property(settings.sweep, id, value);
+    }
+}
+
+bool get_test_property(const TestSettings &settings, guint id, GValue *value)
+{
+    switch (id) {
+    case PROP_RATE:
+        g_value_set_double(value, settings.rate);
+        return true;
+    case PROP_IS_LIVE:
+        g_value_set_boolean(value, settings.is_live);
+        return true;
+    case PROP_NUM_BUFFERS:
+        g_value_set_int(value, settings.num_buffers);
+        return true;
+    default:
+        return get_scene_property(settings.scene, id, value) || get_sweep_property(settings.sweep, id, value);
+    }
+}
+
+void install_test_properties(GObjectClass *klass)
+{
+    constexpr auto ready =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
+    /* Changes are seen from the next sweep on. */
+    constexpr auto playing =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+    const TestSettings defaults;
+
+    install_sweep_properties(klass);
+    const auto install = [klass](guint id, GParamSpec *spec) {
+        g_object_class_install_property(klass, id, spec);
+    };
+    install(PROP_RATE,
+            g_param_spec_double("rate", "Rate", "Sweeps per second", 0.01, 1000.0, defaults.rate, ready));
+    install(PROP_SCENE, g_param_spec_enum("scene", "Scene", "What stands before the camera",
+                                          GST_TYPE_LENS_SWEEP_TEST_SCENE, defaults.scene.scene, playing));
+    install(PROP_IMAGE,
+            g_param_spec_string("image", "Image", "Path of the sharp picture for scene=files", "", playing));
+    install(PROP_DEPTH_MAP,
+            g_param_spec_string("depth-map", "Depth map",
+                                "Path of the disparity map for scene=files: one channel of 8 or 16 bits, the "
+                                "image's size, larger is nearer, 0 is unknown; the 0.2 and 99.8 percentiles "
+                                "become the ends of the sweep",
+                                "", playing));
+    install(PROP_BLUR_STEP,
+            g_param_spec_double("blur-step", "Blur step",
+                                "Change of the circle of confusion's diameter from plane to plane, in pixels",
+                                0.0, 100.0, defaults.scene.blur_step, playing));
+    install(PROP_NOISE,
+            g_param_spec_string("noise", "Noise",
+                                "Noise of the sensor: none, mild (0.05,1), moderate (0.2,2), strong (1,5) or "
+                                "GAIN,READ for the variance GAIN * value + READ^2 of 8-bit values",
+                                defaults.scene.noise.c_str(), playing));
+    install(PROP_MOTION, g_param_spec_double(
+                             "motion", "Motion",
+                             "Pixels that a ball, which flies from side to side before the scene, moves from "
+                             "plane to plane (negative: begins on the right); 0: there is no ball",
+                             -1000.0, 1000.0, defaults.scene.motion, playing));
+    install(PROP_BREATHING,
+            g_param_spec_double(
+                "breathing", "Breathing",
+                "Magnification of the last plane less that of the first, about the picture's centre", -0.5,
+                0.5, defaults.scene.breathing, playing));
+    install(PROP_JITTER,
+            g_param_spec_double("jitter", "Jitter",
+                                "Root mean square of each plane's shift along x and y, in pixels", 0.0, 100.0,
+                                defaults.scene.jitter, playing));
+    install(PROP_SEED, g_param_spec_uint64("seed", "Seed", "Of textures, noise and jitter", 0, G_MAXUINT64,
+                                           defaults.scene.seed, playing));
+    install(PROP_IS_LIVE, g_param_spec_boolean("is-live", "Is live", "Send each frame when its exposure ends",
+                                               defaults.is_live, ready));
+    install(PROP_NUM_BUFFERS, g_param_spec_int("num-buffers", "Number of buffers",
+                                               "Frames to send before the end of the stream; -1 is no end",
+                                               -1, G_MAXINT, defaults.num_buffers, ready));
+}
