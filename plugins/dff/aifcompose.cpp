@@ -289,9 +289,17 @@ static gboolean set_stack_caps(GstAifCompose *self, const GstCaps *caps)
     state.has_stack_caps = true;
     state.composer.reset();
     state.pool.start(state.stack.frame);
-    g_autoptr(GstCaps) src_caps = gst_video_info_to_caps(&state.stack.frame);
-    gst_aggregator_set_src_caps(GST_AGGREGATOR(self), src_caps);
+    gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(self));
     return TRUE;
+}
+
+static GstFlowReturn gst_aif_compose_update_src_caps(GstAggregator *aggregator, GstCaps *, GstCaps **caps)
+{
+    const State &state = *GST_AIF_COMPOSE(aggregator)->state;
+    if (!state.has_stack_caps)
+        return GST_AGGREGATOR_FLOW_NEED_DATA;
+    *caps = gst_video_info_to_caps(&state.stack.frame);
+    return GST_FLOW_OK;
 }
 
 static gboolean gst_aif_compose_sink_event(GstAggregator *aggregator, GstAggregatorPad *pad, GstEvent *event)
@@ -422,6 +430,7 @@ static void gst_aif_compose_class_init(GstAifComposeClass *klass)
     object_class->get_property = gst_aif_compose_get_property;
     object_class->finalize = gst_aif_compose_finalize;
     aggregator_class->aggregate = gst_aif_compose_aggregate;
+    aggregator_class->update_src_caps = gst_aif_compose_update_src_caps;
     aggregator_class->sink_event = gst_aif_compose_sink_event;
     aggregator_class->propose_allocation = gst_aif_compose_propose_allocation;
     aggregator_class->start = gst_aif_compose_start;
