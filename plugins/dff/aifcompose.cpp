@@ -16,11 +16,8 @@
  */
 #include "aifcompose.h"
 
-#include "engine/aif_composer.h"
-#include "gstcl/depth_facts.h"
+#include "aif_picture.h"
 #include "gstcl/engine_message.h"
-#include "gstcl/mapped_stack.h"
-#include "gstcl/picture_pool.h"
 
 #include <gst/dff/dff.h>
 #include <memory>
@@ -61,17 +58,8 @@ struct State {
     GstClockTime latency = 0;
 
     /* The streaming thread's own. */
-    std::shared_ptr<dff::Device> device;
-    std::unique_ptr<dff::AifComposer> composer;
-    std::optional<GstDepthInfo> depth_info; /* of the composer's encoder */
-    dff::PlanePositions positions;
-    GstFocalStackInfo stack{};
-    GstVideoInfo depth{};
+    dff::AifPicture picture;
     bool has_stack_caps = false;
-    bool has_depth_caps = false;
-    dff::PicturePool pool;
-    std::vector<guint16> no_depth; /* zeros, for stacks without a depth map */
-    guint64 next_picture = 0;
 };
 
 } // namespace
@@ -118,114 +106,6 @@ static std::optional<GstBuffer *> matching_depth(GstAifCompose *self, GstBuffer 
     return std::nullopt;
 }
 
-/* Throws dff::EngineError. */
-static void ensure_composer(State &state)
-{
-    if (state.composer)
-        return;
-    state.composer = std::make_unique<dff::AifComposer>(state.device, dff::stack_shape(state.stack));
-    state.depth_info.reset();
-    state.no_depth.assign(static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&state.stack.frame)) *
-                              GST_VIDEO_INFO_HEIGHT(&state.stack.frame),
-                          0);
-}
-
-/* Throws std::invalid_argument if the depth cannot be understood. */
-static void ensure_encoder(State &state, GstBuffer *stack, GstBuffer *depth)
-{
-    const GstDepthMeta *meta = gst_buffer_get_depth_meta(depth);
-    dff::PlanePositions positions = dff::plane_positions(stack);
-    GstDepthInfo info;
-
-    gst_depth_info_init(&info);
-    if (meta)
-        gst_depth_meta_get_depth(meta, &info);
-    const bool same_scale = state.depth_info && state.depth_info->unit == info.unit &&
-                            state.depth_info->scale == info.scale && state.depth_info->offset == info.offset;
-    if (same_scale && positions == state.positions)
-        return;
-    state.composer->set_encoder(dff::encoder_of(info, state.stack.planes, positions));
-    state.positions = std::move(positions);
-    state.depth_info = info;
-}
-
-static void check_depth_size(const State &state)
-{
-    const GstVideoInfo &stack = state.stack.frame, &depth = state.depth;
-    if (GST_VIDEO_INFO_WIDTH(&depth) == GST_VIDEO_INFO_WIDTH(&stack) &&
-        GST_VIDEO_INFO_HEIGHT(&depth) == GST_VIDEO_INFO_HEIGHT(&stack))
-        return;
-    g_autofree gchar *text = g_strdup_printf(
-        "The depth map is %dx%d, the stack %dx%d: scale the depth with nearest-neighbour, or neither",
-        GST_VIDEO_INFO_WIDTH(&depth), GST_VIDEO_INFO_HEIGHT(&depth), GST_VIDEO_INFO_WIDTH(&stack),
-        GST_VIDEO_INFO_HEIGHT(&stack));
-    throw std::runtime_error(text);
-}
-
-/* A depth frame mapped for reading, as long as this lives. */
-class MappedDepth {
-public:
-    MappedDepth(GstVideoInfo &info, GstBuffer *buffer)
-    {
-        if (!gst_video_frame_map(&frame_, &info, buffer, GST_MAP_READ))
-            throw std::runtime_error("The depth map's memory does not hold what its caps say");
-    }
-    ~MappedDepth() { gst_video_frame_unmap(&frame_); }
-
-    MappedDepth(const MappedDepth &) = delete;
-    MappedDepth &operator=(const MappedDepth &) = delete;
-
-    dff::AifComposer::DepthView view() const
-    {
-        const auto stride = static_cast<size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame_, 0));
-        const size_t bytes =
-            stride * (GST_VIDEO_FRAME_HEIGHT(&frame_) - 1) + 2 * GST_VIDEO_FRAME_WIDTH(&frame_);
-        return {{static_cast<const std::byte *>(GST_VIDEO_FRAME_PLANE_DATA(&frame_, 0)), bytes}, stride};
-    }
-
-private:
-    GstVideoFrame frame_;
-};
-
-static void compose(State &state, GstBuffer *stack, GstBuffer *depth, GstBuffer *picture)
-{
-    const dff::MappedStack mapped(state.stack, stack);
-    GstMapInfo output;
-    dff::AifComposer::Blend blend;
-    {
-        const std::lock_guard lock(state.mutex);
-        blend = state.blend;
-    }
-    std::vector<dff::RowLayout> layout;
-    const GstVideoInfo &frame = state.stack.frame;
-    for (guint c = 0; c < GST_VIDEO_INFO_N_PLANES(&frame); c++)
-        layout.push_back({GST_VIDEO_INFO_PLANE_OFFSET(&frame, c),
-                          static_cast<uint64_t>(GST_VIDEO_INFO_PLANE_STRIDE(&frame, c))});
-
-    std::optional<MappedDepth> mapped_depth;
-    if (depth) {
-        check_depth_size(state);
-        ensure_encoder(state, stack, depth);
-        mapped_depth.emplace(state.depth, depth);
-    }
-    const dff::AifComposer::DepthView nothing{std::as_bytes(std::span(state.no_depth)),
-                                              2 * static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&frame))};
-    gst_buffer_map(picture, &output, GST_MAP_WRITE);
-    state.composer->compose(mapped.view(), mapped_depth ? mapped_depth->view() : nothing, blend,
-                            {reinterpret_cast<std::byte *>(output.data), output.size}, layout);
-    gst_buffer_unmap(picture, &output);
-}
-
-static void stamp(State &state, GstBuffer *stack, GstBuffer *depth, GstBuffer *picture)
-{
-    GstBuffer *timed = GST_BUFFER_PTS_IS_VALID(stack) || !depth ? stack : depth;
-    GST_BUFFER_PTS(picture) = GST_BUFFER_PTS(timed);
-    GST_BUFFER_DURATION(picture) = GST_BUFFER_DURATION(timed);
-    GST_BUFFER_OFFSET(picture) = state.next_picture++;
-    if (GstReferenceTimestampMeta *clock = gst_buffer_get_reference_timestamp_meta(stack, nullptr))
-        gst_buffer_add_reference_timestamp_meta(picture, clock->reference, clock->timestamp, clock->duration);
-}
-
 static void account(GstAifCompose *self, GstClockTime compute_time, bool with_depth)
 {
     State &state = *self->state;
@@ -242,20 +122,20 @@ static void account(GstAifCompose *self, GstClockTime compute_time, bool with_de
     gst_aggregator_set_latency(GST_AGGREGATOR(self), latency, latency);
 }
 
+static dff::AifComposer::Blend blend_of(State &state)
+{
+    const std::lock_guard lock(state.mutex);
+    return state.blend;
+}
+
 static GstFlowReturn compose_and_push(GstAifCompose *self, GstBuffer *stack, GstBuffer *depth)
 {
     State &state = *self->state;
     try {
         const GstClockTime start = gst_util_get_timestamp();
-        ensure_composer(state);
-        g_autoptr(GstBuffer) picture = state.pool.acquire();
-        if (!picture)
-            return GST_FLOW_FLUSHING;
-        compose(state, stack, depth, picture);
-        stamp(state, stack, depth, picture);
+        GstBuffer *picture = state.picture.compose(stack, depth, blend_of(state));
         account(self, gst_util_get_timestamp() - start, depth != nullptr);
-        return gst_aggregator_finish_buffer(GST_AGGREGATOR(self),
-                                            reinterpret_cast<GstBuffer *>(g_steal_pointer(&picture)));
+        return gst_aggregator_finish_buffer(GST_AGGREGATOR(self), picture);
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
     } catch (const std::exception &error) {
@@ -284,12 +164,21 @@ static GstFlowReturn gst_aif_compose_aggregate(GstAggregator *aggregator, gboole
 static gboolean set_stack_caps(GstAifCompose *self, const GstCaps *caps)
 {
     State &state = *self->state;
-    if (!gst_focal_stack_info_from_caps(&state.stack, caps))
+    GstFocalStackInfo info;
+    if (!gst_focal_stack_info_from_caps(&info, caps))
         return FALSE;
+    state.picture.set_stack(info);
     state.has_stack_caps = true;
-    state.composer.reset();
-    state.pool.start(state.stack.frame);
     gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(self));
+    return TRUE;
+}
+
+static gboolean set_depth_caps(GstAifCompose *self, const GstCaps *caps)
+{
+    GstVideoInfo info;
+    if (!gst_video_info_from_caps(&info, caps))
+        return FALSE;
+    self->state->picture.set_depth(info);
     return TRUE;
 }
 
@@ -298,7 +187,7 @@ static GstFlowReturn gst_aif_compose_update_src_caps(GstAggregator *aggregator, 
     const State &state = *GST_AIF_COMPOSE(aggregator)->state;
     if (!state.has_stack_caps)
         return GST_AGGREGATOR_FLOW_NEED_DATA;
-    *caps = gst_video_info_to_caps(&state.stack.frame);
+    *caps = gst_video_info_to_caps(&state.picture.stack().frame);
     return GST_FLOW_OK;
 }
 
@@ -309,9 +198,8 @@ static gboolean gst_aif_compose_sink_event(GstAggregator *aggregator, GstAggrega
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
         GstCaps *caps = nullptr;
         gst_event_parse_caps(event, &caps);
-        const gboolean accepted = pad == self->stack_pad
-                                      ? set_stack_caps(self, caps)
-                                      : gst_video_info_from_caps(&self->state->depth, caps);
+        const gboolean accepted =
+            pad == self->stack_pad ? set_stack_caps(self, caps) : set_depth_caps(self, caps);
         gst_event_unref(event);
         return accepted;
     }
@@ -345,7 +233,7 @@ static gboolean gst_aif_compose_start(GstAggregator *aggregator)
         }
     try {
         const std::lock_guard lock(state.mutex);
-        state.device = dff::Device::open(state.device_wish);
+        state.picture.start(dff::Device::open(state.device_wish));
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
         return FALSE;
@@ -356,11 +244,8 @@ static gboolean gst_aif_compose_start(GstAggregator *aggregator)
 static gboolean gst_aif_compose_stop(GstAggregator *aggregator)
 {
     State &state = *GST_AIF_COMPOSE(aggregator)->state;
-    state.composer.reset();
-    state.device.reset();
-    state.pool.stop();
+    state.picture.stop();
     state.has_stack_caps = false;
-    state.next_picture = 0;
     const std::lock_guard lock(state.mutex);
     state.pictures = state.without_depth = 0;
     state.latency = 0;

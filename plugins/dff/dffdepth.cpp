@@ -21,9 +21,9 @@
 
 #include "depth_maps.h"
 #include "dffdepth_properties.h"
-#include "gstcl/depth_facts.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
+#include "stack_depth.h"
 
 #include <gst/base/gstflowcombiner.h>
 #include <gst/dff/dff.h>
@@ -61,12 +61,7 @@ struct State {
     GstClockTime latency = 0;
 
     /* The streaming thread's own. */
-    std::shared_ptr<dff::Device> device;
-    std::unique_ptr<dff::FocusEngine> engine;
-    std::optional<dff::DepthEncoder> encoder;
-    dff::PlanePositions positions;
-    GstDepthUnit unit = GST_DEPTH_UNIT_AUTO;
-    GstFocalStackInfo info{};
+    dff::StackDepth depth;
     bool has_caps = false;
     GstSegment segment{};
     guint64 next_stack = 0;
@@ -113,48 +108,14 @@ static Outputs outputs_of(State &state)
     return state.outputs;
 }
 
-/* Makes the engine anew where caps or properties have changed. Throws dff::EngineError. */
-static void ensure_engine(State &state)
+/* The settings, if they have changed since the last call. */
+static std::optional<dff::DepthSettings> changed_settings(State &state)
 {
-    dff::DepthSettings settings;
-    {
-        const std::lock_guard lock(state.mutex);
-        settings = state.settings;
-        if (state.settings_changed)
-            state.engine.reset();
-        state.settings_changed = false;
-    }
-    if (state.engine)
-        return;
-    state.engine =
-        std::make_unique<dff::FocusEngine>(state.device, dff::stack_shape(state.info), settings.parameters);
-    state.unit = settings.unit;
-    state.encoder.reset();
-}
-
-/* Throws std::invalid_argument if the unit cannot be had for this stack. */
-static void ensure_encoder(State &state, GstBuffer *stack)
-{
-    dff::PlanePositions positions = dff::plane_positions(stack);
-    if (state.encoder && positions == state.positions)
-        return;
-    state.encoder = dff::make_encoder(state.unit, state.info.planes, positions);
-    state.positions = std::move(positions);
-    state.engine->set_encoder(*state.encoder);
-}
-
-static GstDepthInfo depth_info_of(const State &state, GstBuffer *stack)
-{
-    GstDepthInfo depth = dff::depth_info(*state.encoder, state.positions);
-    GstFocusInfo focus;
-
-    depth.sequence = state.next_stack;
-    if (const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack)) {
-        depth.sequence = meta->sequence;
-        gst_focal_stack_meta_get_focus(meta, 0, &focus);
-        depth.sweep = focus.sweep;
-    }
-    return depth;
+    const std::lock_guard lock(state.mutex);
+    if (!state.settings_changed)
+        return std::nullopt;
+    state.settings_changed = false;
+    return state.settings;
 }
 
 /* Announces a new latency when the computing takes notably longer than was said. */
@@ -167,8 +128,7 @@ static void account(GstDffDepth *self, GstClockTime compute_time, bool known)
         state.statistics.stacks++;
         state.statistics.without_depth += !known;
         state.statistics.compute_time = compute_time;
-        if (state.engine)
-            state.statistics.stages = state.engine->times();
+        state.statistics.stages = state.depth.times();
         slower = compute_time > state.latency + state.latency / 4 + GST_MSECOND;
         if (slower)
             state.latency = compute_time;
@@ -183,7 +143,7 @@ static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *st
     if (GST_BUFFER_FLAG_IS_SET(stack, GST_BUFFER_FLAG_GAP))
         return false;
     try {
-        return self->state->engine->compute(view, maps.outputs());
+        return self->state->depth.compute(view, maps.outputs());
     } catch (const dff::EngineError &error) {
         dff::post_engine_warning(GST_ELEMENT(self), error);
         return false;
@@ -214,10 +174,11 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         return GST_FLOW_NOT_NEGOTIATED;
     }
     try {
-        const dff::MappedStack mapped(state.info, stack);
-        ensure_engine(state);
-        ensure_encoder(state, stack);
-        dff::DepthMaps maps(outputs_of(state), state.info.frame, depth_info_of(state, stack), state.segment);
+        const dff::MappedStack mapped(state.depth.stack(), stack);
+        if (const auto settings = changed_settings(state))
+            state.depth.set_settings(*settings);
+        const GstDepthInfo depth = state.depth.prepare(stack, state.next_stack);
+        dff::DepthMaps maps(outputs_of(state), state.depth.stack().frame, depth, state.segment);
 
         const GstClockTime start = gst_util_get_timestamp();
         const bool known = compute(self, mapped.view(), stack, maps);
@@ -247,9 +208,8 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
                           ("These are not the caps of a focal stack: %" GST_PTR_FORMAT, caps), (nullptr));
         return FALSE;
     }
-    state.info = info;
+    state.depth.set_stack(info);
     state.has_caps = true;
-    state.engine.reset();
     return TRUE;
 }
 
@@ -370,8 +330,9 @@ static bool open_device(GstDffDepth *self)
         wish = state.settings.device;
     }
     try {
-        state.device = dff::Device::open(wish);
-        GST_INFO_OBJECT(self, "computing on %s", state.device->name().c_str());
+        std::shared_ptr<dff::Device> device = dff::Device::open(wish);
+        GST_INFO_OBJECT(self, "computing on %s", device->name().c_str());
+        state.depth.start(std::move(device));
         return true;
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
@@ -391,7 +352,6 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
         GST_ELEMENT_CLASS(gst_dff_depth_parent_class)->change_state(element, transition);
 
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
-        state.engine.reset();
         state.has_caps = false;
         state.next_stack = 0;
         for (const auto &output : outputs_of(state))
@@ -402,7 +362,7 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
         state.latency = 0;
     }
     if (transition == GST_STATE_CHANGE_READY_TO_NULL)
-        state.device.reset();
+        state.depth.stop();
     return result;
 }
 

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/aif_composer.h"
+#include "gstcl/depth_facts.h"
+#include "gstcl/picture_pool.h"
+
+#include <gst/dff/dff.h>
+#include <memory>
+#include <optional>
+
+namespace dff {
+
+/* Stacks and depth maps in GstBuffers to all-in-focus pictures in GstBuffers. Used by one thread. */
+class AifPicture {
+public:
+    void start(std::shared_ptr<Device> device) { device_ = std::move(device); }
+    void stop();
+
+    /* The caps of what comes from here on. */
+    void set_stack(const GstFocalStackInfo &stack);
+    void set_depth(const GstVideoInfo &depth) { depth_ = depth; }
+    const GstFocalStackInfo &stack() const { return stack_; }
+
+    /* Returns a picture with the stack's time. Without a depth map it is the mean of the planes.
+     * Throws EngineError, or std::exception with a user's text if depth and stack do not fit each other. */
+    GstBuffer *compose(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend);
+
+private:
+    void ensure_composer();
+    void ensure_encoder(GstBuffer *stack, GstBuffer *depth);
+    void check_depth_size() const;
+    void fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend, GstBuffer *picture);
+    void stamp(GstBuffer *stack, GstBuffer *depth, GstBuffer *picture);
+
+    std::shared_ptr<Device> device_;
+    std::unique_ptr<AifComposer> composer_;
+    std::optional<GstDepthInfo> scale_; /* what the composer's encoder stands for, with positions_ */
+    PlanePositions positions_;
+    GstFocalStackInfo stack_{};
+    GstVideoInfo depth_{};
+    PicturePool pool_;
+    std::vector<guint16> no_depth_; /* zeros, for stacks without a depth map */
+    guint64 next_picture_ = 0;
+};
+
+} // namespace dff

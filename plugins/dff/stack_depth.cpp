@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "stack_depth.h"
+
+#include "gstcl/mapped_stack.h"
+
+namespace dff {
+
+void StackDepth::stop()
+{
+    engine_.reset();
+    device_.reset();
+}
+
+void StackDepth::set_stack(const GstFocalStackInfo &stack)
+{
+    stack_ = stack;
+    engine_.reset();
+}
+
+void StackDepth::set_settings(const DepthSettings &settings)
+{
+    settings_ = settings;
+    engine_.reset();
+}
+
+GstDepthInfo StackDepth::prepare(GstBuffer *stack, guint64 index)
+{
+    if (!engine_) {
+        engine_ = std::make_unique<FocusEngine>(device_, stack_shape(stack_), settings_.parameters);
+        encoder_.reset();
+    }
+    PlanePositions positions = plane_positions(stack);
+    if (!encoder_ || positions != positions_) {
+        encoder_ = make_encoder(settings_.unit, stack_.planes, positions);
+        positions_ = std::move(positions);
+        engine_->set_encoder(*encoder_);
+    }
+
+    GstDepthInfo depth = depth_info(*encoder_, positions_);
+    depth.sequence = index;
+    if (const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack)) {
+        GstFocusInfo focus;
+        gst_focal_stack_meta_get_focus(meta, 0, &focus);
+        depth.sequence = meta->sequence;
+        depth.sweep = focus.sweep;
+    }
+    return depth;
+}
+
+} // namespace dff

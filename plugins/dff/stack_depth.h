@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "dffdepth_properties.h"
+#include "gstcl/depth_facts.h"
+
+#include <memory>
+#include <optional>
+
+namespace dff {
+
+/* The engine of dffdepth, made anew where caps, settings or the planes' positions change. Used by one thread.
+ */
+class StackDepth {
+public:
+    void start(std::shared_ptr<Device> device) { device_ = std::move(device); }
+    void stop();
+
+    /* Caps and settings of what comes from here on. */
+    void set_stack(const GstFocalStackInfo &stack);
+    void set_settings(const DepthSettings &settings);
+    const GstFocalStackInfo &stack() const { return stack_; }
+
+    /* Makes the engine ready for `stack`, the `index`-th of its stream, and returns the facts of its depth
+     * map. Throws EngineError, or std::invalid_argument with a user's text if the unit cannot be had for this
+     * stack. */
+    GstDepthInfo prepare(GstBuffer *stack, guint64 index);
+
+    /* FocusEngine::compute() */
+    bool compute(const StackView &view, const DepthOutputs &outputs)
+    {
+        return engine_->compute(view, outputs);
+    }
+
+    /* Of the last stack; empty before the first. */
+    StageTimes times() const { return engine_ ? engine_->times() : StageTimes(); }
+
+private:
+    std::shared_ptr<Device> device_;
+    DepthSettings settings_;
+    GstFocalStackInfo stack_{};
+    std::unique_ptr<FocusEngine> engine_;
+    std::optional<DepthEncoder> encoder_;
+    PlanePositions positions_;
+};
+
+} // namespace dff
