@@ -47,7 +47,9 @@ class Bench:
         await Timer(40 * CLOCK_PS, unit="ps")
         self.dut.reset_button.value = 0
         await Timer(40 * CLOCK_PS, unit="ps")
-        for record in (self.triggers, self.syncs, self.lens.writes, self.lens.codes, self.lens.starts):
+        self.lens.release()
+        for record in (self.triggers, self.syncs, self.lens.writes, self.lens.codes, self.lens.starts,
+                       self.lens.nack_at, self.lens.stretch_at):
             record.clear()
 
     async def wait_us(self, time_us):
@@ -64,10 +66,10 @@ class Bench:
         except SimTimeoutError:
             raise AssertionError(f"{signal._path} did not become {level} in {limit_us} us") from None
 
-    async def until_triggers(self, count, limit_us):
+    async def until_triggers(self, count, limit_us, active=1):
         """Waits until `count` trigger pulses have begun."""
         async def wait():
-            while len(self.trigger_starts()) < count:
+            while len(self.trigger_starts(active)) < count:
                 await ValueChange(self.dut.trigger)
                 await Timer(1, unit="ps")
         try:

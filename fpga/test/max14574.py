@@ -25,11 +25,20 @@ class Max14574:
         self.writes, self.codes, self.starts = [], [], []
         # Faults: number of the transfer (from 0) -> byte not acknowledged, or ps for which SCL is held at byte 0
         self.nack_at, self.stretch_at = {}, {}
-        self.payload, self.bits, self.byte = None, 0, 0
+        self.payload, self.bits, self.byte, self.held = None, 0, 0, 0
         scl_low.value = 0
         sda_low.value = 0
         cocotb.start_soon(self._follow_scl())
         cocotb.start_soon(self._follow_sda())
+
+    def hold(self, clocks):
+        """Holds SDA low, as in a read that was cut off, for this many clocks (None: until release)."""
+        self.held = clocks
+        self.sda_low.value = 1
+
+    def release(self):
+        self.held = 0
+        self.sda_low.value = 0
 
     async def _follow_sda(self):
         """Start and stop: SDA moves while SCL is high."""
@@ -47,7 +56,11 @@ class Max14574:
     async def _follow_scl(self):
         while True:
             await ValueChange(self.scl)
-            if self.payload is None:
+            if self.held != 0:
+                if self.held and self.scl.value == 0:
+                    self.held -= 1
+                    self.sda_low.value = int(self.held > 0)
+            elif self.payload is None:
                 self.sda_low.value = 0
             elif self.scl.value == 1:
                 self._rise()

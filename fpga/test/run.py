@@ -115,7 +115,15 @@ class Report:
         self.failed += not good
         print(f"{'PASS' if good else 'FAIL'}  {name}", flush=True)
         if not good and log and log.exists():
-            print("\n".join(log.read_text(encoding="utf-8", errors="replace").splitlines()[-40:]), flush=True)
+            print(excerpt(log, name.rpartition(" ")[2]), flush=True)
+
+
+def excerpt(log, test):
+    """What the log says about one test that failed, or its end."""
+    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    first = next((number for number, line in enumerate(lines) if line.endswith(f"{test} failed")), len(lines) - 30)
+    last = next((number for number in range(first + 1, len(lines)) if " INFO " in lines[number]), len(lines))
+    return "\n".join("      " + line.strip() for line in lines[max(first, 0):last])
 
 
 def run_command(report, name, command, bad_words=()):
