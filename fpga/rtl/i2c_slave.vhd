@@ -160,8 +160,10 @@ begin
 
               when count_byte =>
 
-                accept    := count_is_valid(shifter);
-                remaining <= to_integer(unsigned(shifter(5 downto 0)));
+                accept := count_is_valid(shifter);
+                if (accept) then
+                  remaining <= to_integer(unsigned(shifter(5 downto 0)));
+                end if;
 
               when low_byte =>
 

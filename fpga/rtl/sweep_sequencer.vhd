@@ -153,6 +153,7 @@ begin
     begin
 
       state <= stop_state;
+      step  <= 0;
       if (exposing = '0') then
         running <= '0';
       end if;
@@ -164,6 +165,7 @@ begin
 
       late     <= '1';
       state    <= stop_state;
+      step     <= 0;
       running  <= '0';
       exposing <= '0';
 
@@ -392,8 +394,12 @@ begin
 
         when stop_state =>
 
+          -- Some cycles at rest, in which an error takes go back
           if (running = '0' and lens_busy = '0') then
-            state <= idle_state;
+            step <= step + 1;
+            if (step = LAST_STEP) then
+              state <= idle_state;
+            end if;
           end if;
 
       end case;
