@@ -34,6 +34,13 @@ def writable(register):
     return register.mode.software_can_write
 
 
+def aligned(pairs):
+    """Lines whose second parts stand below each other."""
+    pairs = list(pairs)
+    width = max(len(left) for left, _ in pairs)
+    return [f"{left:{width}} {right}" for left, right in pairs]
+
+
 class SweepGenerator(RegisterCodeGenerator):
     """What the three generators share: plain text, without the time-dependent header of hdl-registers."""
 
@@ -62,32 +69,32 @@ class VhdlPackage(SweepGenerator):
         lines += ["", "library ieee;", "  use ieee.std_logic_1164.all;", "", "package sweep_registers_pkg is", "",
                   f"  subtype word_t is std_ulogic_vector({WORD_BITS - 1} downto 0);", "",
                   "  type words_t is array (natural range <>) of word_t;", "",
-                  f"  constant WORD_COUNT : positive := {len(registers)};", "",
-                  "  -- Word numbers", ""]
-        lines += [f"  constant WORD_{register.name.upper()} : natural := {register.index};" for register in registers]
-        lines += ["", "  -- Fields: the number of a bit, or the range of a vector", ""]
+                  f"  constant WORD_COUNT : positive := {len(registers)};", "", "  -- Word numbers", ""]
+        lines += aligned((f"  constant WORD_{register.name.upper()}", f": natural := {register.index};")
+                         for register in registers)
+        lines += ["", "  -- Fields of one bit: its number", ""]
+        lines += aligned((f"  constant {register.name}_{field.name}".upper().replace("CONSTANT", "constant"),
+                          f": natural := {field.base_index};")
+                         for register in registers for field in register.fields if field.width == 1)
+        lines += ["", "  -- Longer fields: their range", ""]
         for register in registers:
-            lines += [self.field(register, field) for field in register.fields]
-        lines += ["", "  -- The words after reset", "", "  constant DEFAULTS : words_t(0 to WORD_COUNT - 1) :=", "  ("]
-        lines += self.table(registers, lambda register: f'x"{default_of(register):04X}"')
-        lines += ["  );", "", "  -- The bits that a host can write", "",
-                  "  constant WRITE_MASKS : words_t(0 to WORD_COUNT - 1) :=", "  ("]
-        lines += self.table(registers,
-                            lambda register: f'x"{mask_of(register) if writable(register) else 0:04X}"')
-        lines += ["  );", "", "end package sweep_registers_pkg;", ""]
+            for field in register.fields:
+                if field.width > 1:
+                    top = field.base_index + field.width - 1
+                    lines += [f"  subtype {register.name}_{field.name}_t is natural range {top} downto "
+                              f"{field.base_index};", ""]
+        lines += self.table("DEFAULTS", "The words after reset", registers, default_of)
+        lines += self.table("WRITE_MASKS", "The bits that a host can write", registers,
+                            lambda register: mask_of(register) if writable(register) else 0)
+        lines += ["end package sweep_registers_pkg;", ""]
         return "\n".join(lines)
 
     @staticmethod
-    def field(register, field):
-        name = f"{register.name}_{field.name}"
-        if field.width == 1:
-            return f"  constant {name.upper()} : natural := {field.base_index};"
-        return f"  subtype {name}_t is natural range {field.base_index + field.width - 1} downto {field.base_index};"
-
-    @staticmethod
-    def table(registers, value):
-        rows = [f"    WORD_{register.name.upper()} => {value(register)}" for register in registers]
-        return [row + "," for row in rows[:-1]] + rows[-1:]
+    def table(name, comment, registers, value):
+        """A constant array of one word a register."""
+        rows = aligned((f"    WORD_{register.name.upper()}", f'=> x"{value(register):04X}",') for register in registers)
+        return [f"  -- {comment}", "", f"  constant {name} : words_t(0 to WORD_COUNT - 1) :=", "  (",
+                *rows[:-1], rows[-1].rstrip(","), "  );", ""]
 
 
 class CppHeader(SweepGenerator):

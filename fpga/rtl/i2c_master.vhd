@@ -18,27 +18,27 @@ entity i2c_master is
     BUS_HZ          : positive := 400_000;
     STRETCH_LIMIT_S : real     := 100.0e-6;
     -- Cycles from the pin to scl_in and sda_in: the synchroniser
-    INPUT_CYCLES    : positive := 9
+    INPUT_CYCLES : positive := 9
   );
   port (
-    clk              : in    std_ulogic;
-    reset            : in    std_ulogic;
-    start            : in    std_ulogic;
-    address          : in    std_ulogic_vector(6 downto 0);
-    register_number  : in    std_ulogic_vector(7 downto 0);
-    value            : in    std_ulogic_vector(7 downto 0);
-    busy             : out   std_ulogic;
-    done             : out   std_ulogic;
+    clk             : in    std_ulogic;
+    reset           : in    std_ulogic;
+    start           : in    std_ulogic;
+    address         : in    std_ulogic_vector(6 downto 0);
+    register_number : in    std_ulogic_vector(7 downto 0);
+    value           : in    std_ulogic_vector(7 downto 0);
+    busy            : out   std_ulogic;
+    done            : out   std_ulogic;
     -- Valid together with done
     nack             : out   std_ulogic;
     stretched        : out   std_ulogic;
     stuck            : out   std_ulogic;
     arbitration_lost : out   std_ulogic;
     -- The bus, synchronised; '1' on an output pulls the line low
-    scl_in           : in    std_ulogic;
-    sda_in           : in    std_ulogic;
-    scl_low          : out   std_ulogic;
-    sda_low          : out   std_ulogic
+    scl_in  : in    std_ulogic;
+    sda_in  : in    std_ulogic;
+    scl_low : out   std_ulogic;
+    sda_low : out   std_ulogic
   );
 end entity i2c_master;
 
@@ -60,6 +60,7 @@ architecture rtl of i2c_master is
   );
 
   -- Part of a bit
+
   type phase_t is (low_phase, rise_phase, high_phase);
 
   signal state   : state_t;
@@ -69,9 +70,11 @@ architecture rtl of i2c_master is
   -- Bits sent of the 27 (three bytes with their acknowledges), or clocks of the recovery
   signal bit_index : natural range 0 to 27;
   -- The acknowledge bits stand in it as ones: the line is released
-  signal shifter   : std_ulogic_vector(26 downto 0);
+  signal shifter : std_ulogic_vector(26 downto 0);
 
-  function is_acknowledge (index : natural) return boolean is
+  function is_acknowledge (
+    index : natural
+  ) return boolean is
   begin
 
     return index = 8 or index = 17 or index = 26;
@@ -113,6 +116,7 @@ begin
     end procedure finish;
 
     -- Next phase of a bit whose SCL is pulled low, then released; waits in rise_phase while SCL is stretched
+
     procedure run_clock is
     begin
 

@@ -17,17 +17,17 @@ entity i2c_slave is
     ADDRESS    : natural  := 16#3C#;
     WORD_COUNT : positive := 30;
     -- SDA changes this long after the falling edge of SCL
-    HOLD_S     : real     := 300.0e-9;
+    HOLD_S : real := 300.0e-9;
     -- A transfer that stands still for longer is given up (SMBus: 25 ms)
-    TIMEOUT_S  : real     := 25.0e-3
+    TIMEOUT_S : real := 25.0e-3
   );
   port (
-    clk         : in    std_ulogic;
-    reset       : in    std_ulogic;
+    clk   : in    std_ulogic;
+    reset : in    std_ulogic;
     -- The bus, synchronised; '1' on sda_low pulls the line low
-    scl_in      : in    std_ulogic;
-    sda_in      : in    std_ulogic;
-    sda_low     : out   std_ulogic;
+    scl_in  : in    std_ulogic;
+    sda_in  : in    std_ulogic;
+    sda_low : out   std_ulogic;
     -- The words; read_data is taken from four cycles after read on
     word_number : out   unsigned(6 downto 0);
     writable    : in    std_ulogic;
@@ -47,6 +47,7 @@ architecture rtl of i2c_slave is
   type state_t is (idle_state, receive_state, acknowledge_state, send_state, master_acknowledge_state);
 
   -- What the byte in hand is
+
   type byte_t is (address_byte, command_byte, count_byte, low_byte, high_byte);
 
   signal state     : state_t;
@@ -59,33 +60,41 @@ architecture rtl of i2c_slave is
   signal word      : natural range 0 to 127;
   signal block_on  : std_ulogic;
   -- Bytes left of a block write; 0 outside of a block
-  signal remaining   : natural range 0 to MAX_BLOCK_BYTES;
-  signal low_data    : std_ulogic_vector(7 downto 0);
-  signal high_data   : std_ulogic_vector(7 downto 0);
-  signal drive_low   : std_ulogic;
-  signal pull        : std_ulogic;
-  signal hold        : natural range 0 to HOLD_CYCLES - 1;
-  signal quiet       : natural range 0 to TIMEOUT_CYCLES;
+  signal remaining : natural range 0 to MAX_BLOCK_BYTES;
+  signal low_data  : std_ulogic_vector(7 downto 0);
+  signal high_data : std_ulogic_vector(7 downto 0);
+  signal drive_low : std_ulogic;
+  signal pull      : std_ulogic;
+  signal hold      : natural range 0 to HOLD_CYCLES - 1;
+  signal quiet     : natural range 0 to TIMEOUT_CYCLES;
 
-  function count_is_valid (byte : std_ulogic_vector(7 downto 0)) return boolean is
+  function count_is_valid (
+    byte : std_ulogic_vector(7 downto 0)
+  ) return boolean is
   begin
 
     return byte(0) = '0' and unsigned(byte) /= 0 and unsigned(byte) <= MAX_BLOCK_BYTES;
 
   end function count_is_valid;
 
-  function next_word (word : natural range 0 to 127) return natural is
+  function next_word (
+    word : natural range 0 to 127
+  ) return natural is
   begin
 
     if (word = 127) then
       return 127;
     end if;
+
     return word + 1;
 
   end function next_word;
 
   -- Bytes that a block read from a word on gives
-  function block_bytes (from_word : natural range 0 to 127) return natural is
+
+  function block_bytes (
+    from_word : natural range 0 to 127
+  ) return natural is
   begin
 
     if (from_word + MAX_BLOCK_BYTES / 2 <= WORD_COUNT) then
@@ -93,6 +102,7 @@ architecture rtl of i2c_slave is
     elsif (from_word < WORD_COUNT) then
       return 2 * (WORD_COUNT - from_word);
     end if;
+
     return 0;
 
   end function block_bytes;
@@ -108,7 +118,9 @@ begin
     variable fall   : boolean;
     variable accept : boolean;
 
-    procedure send_byte (byte : std_ulogic_vector(7 downto 0)) is
+    procedure send_byte (
+      byte : std_ulogic_vector(7 downto 0)
+    ) is
     begin
 
       state     <= send_state;

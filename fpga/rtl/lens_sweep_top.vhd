@@ -13,7 +13,7 @@ library work;
 
 entity lens_sweep_top is
   generic (
-    CLOCK_HZ        : positive := 125_000_000;
+    CLOCK_HZ : positive := 125_000_000;
     -- Rate of the time unit of the registers; other than 1 MHz only to simulate faster
     TICK_HZ         : positive := 1_000_000;
     LENS_BUS_HZ     : positive := 400_000;
@@ -27,16 +27,16 @@ entity lens_sweep_top is
     clk          : in    std_ulogic;
     reset_button : in    std_ulogic;
     -- Start and stop line of the host, and the sweep's answer
-    run          : in    std_ulogic;
-    sync         : out   std_ulogic;
-    trigger      : out   std_ulogic;
-    busy         : out   std_ulogic;
-    error        : out   std_ulogic;
+    run     : in    std_ulogic;
+    sync    : out   std_ulogic;
+    trigger : out   std_ulogic;
+    busy    : out   std_ulogic;
+    error   : out   std_ulogic;
     -- Open drain, with pull-ups
-    host_scl     : in    std_logic;
-    host_sda     : inout std_logic;
-    lens_scl     : inout std_logic;
-    lens_sda     : inout std_logic
+    host_scl : in    std_logic;
+    host_sda : inout std_logic;
+    lens_scl : inout std_logic;
+    lens_sda : inout std_logic
   );
 end entity lens_sweep_top;
 
@@ -44,13 +44,13 @@ architecture rtl of lens_sweep_top is
 
   -- Two flip-flops and the glitch filter
   constant POWER_UP_CYCLES : positive := 8;
-  constant INPUT_CYCLES : positive := 2 + to_cycles(CLOCK_HZ, GLITCH_S);
+  constant INPUT_CYCLES    : positive := 2 + to_cycles(CLOCK_HZ, GLITCH_S);
 
   -- Reset at power-up
   signal power_up       : natural range 0 to POWER_UP_CYCLES := POWER_UP_CYCLES;
   signal power_up_reset : std_ulogic                         := '1';
-  signal button   : std_ulogic;
-  signal reset    : std_ulogic                    := '1';
+  signal button         : std_ulogic;
+  signal reset          : std_ulogic                         := '1';
 
   signal run_level      : std_ulogic;
   signal host_scl_level : std_ulogic;
@@ -115,18 +115,18 @@ architecture rtl of lens_sweep_top is
   signal table_data     : std_ulogic_vector(15 downto 0);
   signal table_read     : std_ulogic;
 
-  signal lens_start         : std_ulogic;
-  signal lens_register      : std_ulogic_vector(7 downto 0);
-  signal lens_value         : std_ulogic_vector(7 downto 0);
-  signal lens_done          : std_ulogic;
-  signal lens_fault         : std_ulogic;
-  signal lens_faults        : std_ulogic_vector(3 downto 0);
-  signal sweep_faults       : std_ulogic_vector(4 downto 0);
-  signal table_faults       : std_ulogic_vector(2 downto 0);
-  signal table_fault_plane  : unsigned(5 downto 0);
-  signal trigger_active     : std_ulogic;
-  signal sync_active        : std_ulogic;
-  signal register_error     : std_ulogic;
+  signal lens_start        : std_ulogic;
+  signal lens_register     : std_ulogic_vector(7 downto 0);
+  signal lens_value        : std_ulogic_vector(7 downto 0);
+  signal lens_done         : std_ulogic;
+  signal lens_fault        : std_ulogic;
+  signal lens_faults       : std_ulogic_vector(3 downto 0);
+  signal sweep_faults      : std_ulogic_vector(4 downto 0);
+  signal table_faults      : std_ulogic_vector(2 downto 0);
+  signal table_fault_plane : unsigned(5 downto 0);
+  signal trigger_active    : std_ulogic;
+  signal sync_active       : std_ulogic;
+  signal register_error    : std_ulogic;
 
 begin
 
@@ -151,9 +151,9 @@ begin
         power_up_reset <= '0';
       end if;
       reset <= button or power_up_reset;
-      busy     <= sequencer_busy or trigger_active or sync_active;
-      error    <= register_error;
-      idle     <= not (sequencer_busy or trigger_active);
+      busy  <= sequencer_busy or trigger_active or sync_active;
+      error <= register_error;
+      idle  <= not (sequencer_busy or trigger_active);
     end if;
 
   end process outputs;

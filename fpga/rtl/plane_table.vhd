@@ -18,15 +18,15 @@ entity plane_table is
     LENS_BUS_HZ : positive := 400_000
   );
   port (
-    clk           : in    std_ulogic;
-    reset         : in    std_ulogic;
+    clk   : in    std_ulogic;
+    reset : in    std_ulogic;
     -- The staged table; host_q is valid one cycle after host_read
-    host_plane    : in    unsigned(5 downto 0);
-    host_column   : in    unsigned(1 downto 0);
-    host_write    : in    std_ulogic;
-    host_data     : in    std_ulogic_vector(15 downto 0);
-    host_read     : in    std_ulogic;
-    host_q        : out   std_ulogic_vector(15 downto 0);
+    host_plane  : in    unsigned(5 downto 0);
+    host_column : in    unsigned(1 downto 0);
+    host_write  : in    std_ulogic;
+    host_data   : in    std_ulogic_vector(15 downto 0);
+    host_read   : in    std_ulogic;
+    host_q      : out   std_ulogic_vector(15 downto 0);
     -- The committed words that the check needs, valid two cycles after commit
     commit        : in    std_ulogic;
     planes        : in    unsigned(15 downto 0);
@@ -36,21 +36,21 @@ entity plane_table is
     lead          : in    unsigned(7 downto 0);
     trail         : in    unsigned(7 downto 0);
     -- A new trigger polarity must not make an edge in a sweep: it waits for idle
-    new_level     : in    std_ulogic;
-    pending       : out   std_ulogic;
+    new_level : in    std_ulogic;
+    pending   : out   std_ulogic;
     -- One cycle each
-    apply         : out   std_ulogic;
-    bad_planes    : out   std_ulogic;
-    bad_timing    : out   std_ulogic;
-    bad_code      : out   std_ulogic;
-    bad_plane     : out   unsigned(5 downto 0);
+    apply      : out   std_ulogic;
+    bad_planes : out   std_ulogic;
+    bad_timing : out   std_ulogic;
+    bad_code   : out   std_ulogic;
+    bad_plane  : out   unsigned(5 downto 0);
     -- Sequencer; q is valid one cycle after read
-    idle          : in    std_ulogic;
-    boundary      : in    std_ulogic;
-    plane         : in    unsigned(5 downto 0);
-    column        : in    unsigned(1 downto 0);
-    read          : in    std_ulogic;
-    q             : out   std_ulogic_vector(15 downto 0)
+    idle     : in    std_ulogic;
+    boundary : in    std_ulogic;
+    plane    : in    unsigned(5 downto 0);
+    column   : in    unsigned(1 downto 0);
+    read     : in    std_ulogic;
+    q        : out   std_ulogic_vector(15 downto 0)
   );
 end entity plane_table;
 
@@ -70,8 +70,8 @@ architecture rtl of plane_table is
   signal state : state_t;
   signal step  : natural range 0 to 5;
   -- Word in hand of the copy: plane and column
-  signal address     : unsigned(7 downto 0);
-  signal host_word   : std_ulogic_vector(15 downto 0);
+  signal address        : unsigned(7 downto 0);
+  signal host_word      : std_ulogic_vector(15 downto 0);
   signal staged_address : natural range 0 to 255;
   signal staged_enable  : std_ulogic;
   signal copying        : std_ulogic;
@@ -80,16 +80,16 @@ architecture rtl of plane_table is
   signal copied         : std_ulogic;
   signal copied_address : unsigned(7 downto 0);
 
-  signal bank    : std_ulogic;
-  signal gap     : unsigned(16 downto 0);
-  signal delay   : unsigned(17 downto 0);
-  signal settle  : unsigned(17 downto 0);
-  signal check   : std_ulogic_vector(1 to 2);
+  signal bank   : std_ulogic;
+  signal gap    : unsigned(16 downto 0);
+  signal delay  : unsigned(17 downto 0);
+  signal settle : unsigned(17 downto 0);
+  signal check  : std_ulogic_vector(1 to 2);
   -- The sum of a plane's times is ready one cycle after its last word, the verdict one later
   signal settled_plane : unsigned(5 downto 0);
   signal checked_plane : unsigned(5 downto 0);
-  signal needed  : unsigned(17 downto 0);
-  signal refused : std_ulogic;
+  signal needed        : unsigned(17 downto 0);
+  signal refused       : std_ulogic;
 
 begin
 
@@ -133,13 +133,17 @@ begin
 
   check_and_copy : process (clk) is
 
-    procedure refuse (signal reason : out std_ulogic; at_plane : unsigned) is
+    procedure refuse (
+      signal reason : out std_ulogic;
+      at_plane      : unsigned
+    ) is
     begin
 
       if (refused = '0') then
         reason    <= '1';
         bad_plane <= at_plane;
       end if;
+
       refused <= '1';
 
     end procedure refuse;
@@ -147,11 +151,11 @@ begin
   begin
 
     if rising_edge(clk) then
-      apply       <= '0';
-      bad_planes  <= '0';
-      bad_timing  <= '0';
-      bad_code    <= '0';
-      copied      <= copying;
+      apply      <= '0';
+      bad_planes <= '0';
+      bad_timing <= '0';
+      bad_code   <= '0';
+      copied     <= copying;
 
       case state is
 
@@ -208,7 +212,7 @@ begin
         if (copied_address(1 downto 0) = "11") then
           check(1)      <= '1';
           settled_plane <= copied_address(7 downto 2);
-          settle   <= resize(unsigned(host_word), 18);
+          settle        <= resize(unsigned(host_word), 18);
           if (unsigned(host_word) < lead) then
             settle <= resize(lead, 18);
           end if;
@@ -229,26 +233,26 @@ begin
       end if;
 
       if (commit = '1') then
-        state       <= settings_state;
-        address     <= (others => '0');
-        step        <= 0;
-        pending     <= '0';
-        apply       <= '0';
-        bank        <= bank;
-        refused     <= '0';
-        copied <= '0';
+        state   <= settings_state;
+        address <= (others => '0');
+        step    <= 0;
+        pending <= '0';
+        apply   <= '0';
+        bank    <= bank;
+        refused <= '0';
+        copied  <= '0';
       end if;
 
       if (reset = '1') then
-        state       <= idle_state;
-        step        <= 0;
-        pending     <= '0';
-        refused     <= '0';
-        bank        <= '0';
-        apply <= '0';
+        state   <= idle_state;
+        step    <= 0;
+        pending <= '0';
+        refused <= '0';
+        bank    <= '0';
+        apply   <= '0';
         address <= (others => '0');
-        check       <= "00";
-        copied <= '0';
+        check   <= "00";
+        copied  <= '0';
       end if;
     end if;
 

@@ -19,8 +19,8 @@ entity register_file is
     LENS_BUS_HZ : positive := 400_000
   );
   port (
-    clk         : in    std_ulogic;
-    reset       : in    std_ulogic;
+    clk   : in    std_ulogic;
+    reset : in    std_ulogic;
     -- Host
     word_number : in    unsigned(6 downto 0);
     writable    : out   std_ulogic;
@@ -35,33 +35,33 @@ entity register_file is
     table_data   : out   std_ulogic_vector(15 downto 0);
     table_read   : out   std_ulogic;
     -- One cycle after table_read
-    table_q      : in    std_ulogic_vector(15 downto 0);
-    commit       : out   std_ulogic;
-    pending      : in    std_ulogic;
-    apply        : in    std_ulogic;
+    table_q : in    std_ulogic_vector(15 downto 0);
+    commit  : out   std_ulogic;
+    pending : in    std_ulogic;
+    apply   : in    std_ulogic;
     -- Committed words, for the check
-    checked_planes      : out   unsigned(15 downto 0);
-    checked_period      : out   unsigned(15 downto 0);
-    checked_exposure    : out   unsigned(15 downto 0);
-    checked_width       : out   unsigned(15 downto 0);
-    checked_lead        : out   unsigned(7 downto 0);
-    checked_trail       : out   unsigned(7 downto 0);
-    checked_new_level   : out   std_ulogic;
+    checked_planes    : out   unsigned(15 downto 0);
+    checked_period    : out   unsigned(15 downto 0);
+    checked_exposure  : out   unsigned(15 downto 0);
+    checked_width     : out   unsigned(15 downto 0);
+    checked_lead      : out   unsigned(7 downto 0);
+    checked_trail     : out   unsigned(7 downto 0);
+    checked_new_level : out   std_ulogic;
     -- Words in use
-    planes              : out   unsigned(6 downto 0);
-    triangle            : out   std_ulogic;
-    trigger_active_low  : out   std_ulogic;
-    period              : out   unsigned(15 downto 0);
-    exposure            : out   unsigned(15 downto 0);
-    flyback             : out   unsigned(15 downto 0);
-    trigger_width       : out   unsigned(15 downto 0);
-    lead                : out   unsigned(7 downto 0);
-    opto_on             : out   unsigned(7 downto 0);
-    opto_off            : out   unsigned(7 downto 0);
-    lens_address        : out   std_ulogic_vector(6 downto 0);
-    lens_start          : out   std_ulogic_vector(15 downto 0);
-    lens_stage          : out   std_ulogic_vector(15 downto 0);
-    lens_commit         : out   std_ulogic_vector(15 downto 0);
+    planes             : out   unsigned(6 downto 0);
+    triangle           : out   std_ulogic;
+    trigger_active_low : out   std_ulogic;
+    period             : out   unsigned(15 downto 0);
+    exposure           : out   unsigned(15 downto 0);
+    flyback            : out   unsigned(15 downto 0);
+    trigger_width      : out   unsigned(15 downto 0);
+    lead               : out   unsigned(7 downto 0);
+    opto_on            : out   unsigned(7 downto 0);
+    opto_off           : out   unsigned(7 downto 0);
+    lens_address       : out   std_ulogic_vector(6 downto 0);
+    lens_start         : out   std_ulogic_vector(15 downto 0);
+    lens_stage         : out   std_ulogic_vector(15 downto 0);
+    lens_commit        : out   std_ulogic_vector(15 downto 0);
     -- Sequencer
     run         : in    std_ulogic;
     go          : out   std_ulogic;
@@ -71,41 +71,43 @@ entity register_file is
     sweep_begun : in    std_ulogic;
     frame_begun : in    std_ulogic;
     -- Faults: one bit for each bit of the word `error`
-    sweep_faults : in    std_ulogic_vector(4 downto 0);
-    table_faults : in    std_ulogic_vector(2 downto 0);
+    sweep_faults      : in    std_ulogic_vector(4 downto 0);
+    table_faults      : in    std_ulogic_vector(2 downto 0);
     table_fault_plane : in    unsigned(5 downto 0);
-    error       : out   std_ulogic
+    error             : out   std_ulogic
   );
 end entity register_file;
 
 architecture rtl of register_file is
 
-  constant LENS_GAP   : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 4);
+  constant LENS_GAP    : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 4);
   constant LENS_STAGED : positive := to_write_time(CLOCK_HZ, TICK_HZ, LENS_BUS_HZ, 2);
 
   subtype staged_t is natural range WORD_PLANES to WORD_LENS_COMMIT;
 
-  signal staged       : words_t(staged_t);
-  signal checked      : words_t(staged_t);
-  signal active       : words_t(staged_t);
-  signal control      : word_t;
-  signal selected     : unsigned(5 downto 0);
-  signal errors       : std_ulogic_vector(7 downto 0);
-  signal raised       : std_ulogic_vector(7 downto 0);
-  signal error_at     : unsigned(5 downto 0);
-  signal table_valid  : std_ulogic;
-  signal sweeps       : unsigned(31 downto 0);
-  signal frames       : unsigned(31 downto 0);
-  signal latched_high : std_ulogic_vector(15 downto 0);
-  signal status       : word_t;
+  signal staged           : words_t(staged_t);
+  signal checked          : words_t(staged_t);
+  signal active           : words_t(staged_t);
+  signal control          : word_t;
+  signal selected         : unsigned(5 downto 0);
+  signal errors           : std_ulogic_vector(7 downto 0);
+  signal raised           : std_ulogic_vector(7 downto 0);
+  signal error_at         : unsigned(5 downto 0);
+  signal table_valid      : std_ulogic;
+  signal sweeps           : unsigned(31 downto 0);
+  signal frames           : unsigned(31 downto 0);
+  signal latched_high     : std_ulogic_vector(15 downto 0);
+  signal status           : word_t;
   signal checked_level    : std_ulogic;
   signal checked_opto_on  : unsigned(7 downto 0);
   signal checked_opto_off : unsigned(7 downto 0);
-  signal number       : natural range 0 to 127;
-  signal selection    : word_t;
-  signal read_shift   : std_ulogic_vector(1 to 2);
+  signal number           : natural range 0 to 127;
+  signal selection        : word_t;
+  signal read_shift       : std_ulogic_vector(1 to 2);
 
-  function is_row (number : natural) return boolean is
+  function is_row (
+    number : natural
+  ) return boolean is
   begin
 
     return number >= WORD_PLANE_CODE_A and number <= WORD_PLANE_SETTLE_US;
@@ -114,7 +116,8 @@ architecture rtl of register_file is
 
 begin
 
-  error <= '0' when errors = x"00" else '1';
+  error <= '0' when errors = x"00" else
+           '1';
 
   planes             <= unsigned(active(WORD_PLANES)(6 downto 0));
   triangle           <= active(WORD_SHAPE)(SHAPE_TRIANGLE);
@@ -139,22 +142,14 @@ begin
   table_column <= to_unsigned(number - WORD_PLANE_CODE_A, 2) when is_row(number) else
                   "00";
 
-  status <=
-  (
-    STATUS_BUSY           => busy,
-    STATUS_TABLE_VALID    => table_valid,
-    STATUS_COMMIT_PENDING => pending,
-    STATUS_DOWNWARD       => downward,
-    STATUS_RUN            => run,
-    STATUS_FAILED         => error,
-    6                     => plane(0),
-    7                     => plane(1),
-    8                     => plane(2),
-    9                     => plane(3),
-    10                    => plane(4),
-    11                    => plane(5),
-    others                => '0'
-  );
+  status(STATUS_BUSY)           <= busy;
+  status(STATUS_TABLE_VALID)    <= table_valid;
+  status(STATUS_COMMIT_PENDING) <= pending;
+  status(STATUS_DOWNWARD)       <= downward;
+  status(STATUS_RUN)            <= run;
+  status(STATUS_FAILED)         <= error;
+  status(status_plane_t)        <= std_ulogic_vector(plane);
+  status(15 downto 12)          <= "0000";
 
   number <= to_integer(word_number);
 
@@ -196,13 +191,17 @@ begin
       end if;
 
       if (reset = '1') then
+
         for index in staged_t loop
+
           staged(index)  <= DEFAULTS(index);
           checked(index) <= DEFAULTS(index);
           active(index)  <= DEFAULTS(index);
+
         end loop;
+
         control     <= DEFAULTS(WORD_CONTROL);
-        commit <= '0';
+        commit      <= '0';
         table_write <= '0';
         selected    <= (others => '0');
         table_valid <= '0';
@@ -236,7 +235,7 @@ begin
 
   collect_errors : process (clk) is
 
-    variable kept   : std_ulogic_vector(7 downto 0);
+    variable kept : std_ulogic_vector(7 downto 0);
 
   begin
 

@@ -14,23 +14,23 @@ entity sweep_sequencer is
   generic (
     CLOCK_HZ : positive := 125_000_000;
     -- Rate of the time unit of all times here: microseconds
-    TICK_HZ  : positive := 1_000_000
+    TICK_HZ : positive := 1_000_000
   );
   port (
-    clk         : in    std_ulogic;
-    reset       : in    std_ulogic;
+    clk   : in    std_ulogic;
+    reset : in    std_ulogic;
     -- Sweep while '1'; an exposure that has begun is finished
-    go          : in    std_ulogic;
+    go : in    std_ulogic;
     -- Words in use; they change after boundary, and while the sequencer is not busy
-    planes      : in    unsigned(6 downto 0);
-    triangle    : in    std_ulogic;
-    period      : in    unsigned(15 downto 0);
-    exposure    : in    unsigned(15 downto 0);
-    flyback     : in    unsigned(15 downto 0);
-    lead        : in    unsigned(7 downto 0);
-    start_write : in    std_ulogic_vector(15 downto 0);
+    planes          : in    unsigned(6 downto 0);
+    triangle        : in    std_ulogic;
+    period          : in    unsigned(15 downto 0);
+    exposure        : in    unsigned(15 downto 0);
+    flyback         : in    unsigned(15 downto 0);
+    lead            : in    unsigned(7 downto 0);
+    start_write     : in    std_ulogic_vector(15 downto 0);
     stage_registers : in    std_ulogic_vector(15 downto 0);
-    commit_write : in    std_ulogic_vector(15 downto 0);
+    commit_write    : in    std_ulogic_vector(15 downto 0);
     -- Table of planes: data one cycle after read
     table_plane  : out   unsigned(5 downto 0);
     table_column : out   unsigned(1 downto 0);
@@ -43,13 +43,13 @@ entity sweep_sequencer is
     lens_done     : in    std_ulogic;
     lens_fault    : in    std_ulogic;
     -- One cycle each: trigger pulse, sync pulse (first plane of a sweep), last trigger of a sweep, trigger not given
-    fire       : out   std_ulogic;
-    fire_sync  : out   std_ulogic;
-    boundary   : out   std_ulogic;
-    late       : out   std_ulogic;
-    busy       : out   std_ulogic;
-    plane      : out   unsigned(5 downto 0);
-    downward   : out   std_ulogic
+    fire      : out   std_ulogic;
+    fire_sync : out   std_ulogic;
+    boundary  : out   std_ulogic;
+    late      : out   std_ulogic;
+    busy      : out   std_ulogic;
+    plane     : out   unsigned(5 downto 0);
+    downward  : out   std_ulogic
   );
 end entity sweep_sequencer;
 
@@ -63,6 +63,7 @@ architecture rtl of sweep_sequencer is
   constant LAST_STEP    : positive := CHOOSE_STEP + READ_LATENCY + 4;
 
   -- Time in a slot, as long as it can get: period and flyback
+
   subtype time_t is natural range 0 to 2 ** 17 - 1;
 
   type state_t is (
@@ -126,11 +127,14 @@ begin
 
   sweep : process (clk) is
 
-    variable slot_end  : boolean;
-    variable last      : boolean;
-    variable fire_now  : boolean;
+    variable slot_end : boolean;
+    variable last     : boolean;
+    variable fire_now : boolean;
 
-    procedure write_lens (number, value : std_ulogic_vector(7 downto 0)) is
+    procedure write_lens (
+      number,
+      value : std_ulogic_vector(7 downto 0)
+    ) is
     begin
 
       lens_start    <= '1';
@@ -149,11 +153,13 @@ begin
     end procedure write_commit;
 
     -- An exposure that has begun is finished; a gap is given up at once
+
     procedure stop is
     begin
 
       state <= stop_state;
       step  <= 0;
+
       if (exposing = '0') then
         running <= '0';
       end if;
@@ -190,7 +196,10 @@ begin
 
     end procedure begin_slot;
 
-    procedure wait_for (time_units : unsigned(15 downto 0); next_state : state_t) is
+    procedure wait_for (
+      time_units : unsigned(15 downto 0);
+      next_state : state_t
+    ) is
     begin
 
       wait_time     <= to_integer(time_units);
@@ -407,11 +416,11 @@ begin
       -- The two fixed times of the slot: the trigger leaves, and (behind the opto-isolator) the exposure starts
       fire_now := running = '1' and slot_time = fire_at and slot_prescale = 0 and exposing = '0';
       if (fire_now and state = ready_state and go = '1') then
-        fire     <= '1';
-        exposing <= '1';
-        state    <= fetch_state;
-        step     <= 0;
-        last     := (downward = '0' and plane = planes - 1) or (downward = '1' and plane = 0);
+        fire       <= '1';
+        exposing   <= '1';
+        state      <= fetch_state;
+        step       <= 0;
+        last       := (downward = '0' and plane = planes - 1) or (downward = '1' and plane = 0);
         next_first <= '0';
         if (last) then
           boundary   <= '1';
@@ -439,25 +448,25 @@ begin
       end if;
 
       if (reset = '1') then
-        state      <= idle_state;
-        busy       <= '0';
-        downward   <= '0';
-        plane      <= (others => '0');
-        next_plane <= (others => '0');
+        state        <= idle_state;
+        busy         <= '0';
+        downward     <= '0';
+        plane        <= (others => '0');
+        next_plane   <= (others => '0');
         table_column <= "00";
         table_read   <= '0';
-        second <= '0';
-        next_first <= '1';
-        first <= '0';
-        standstill <= '1';
-        running    <= '0';
-        exposing   <= '0';
-        lens_busy  <= '0';
-        lens_start <= '0';
-        fire       <= '0';
-        fire_sync  <= '0';
-        late       <= '0';
-        boundary   <= '0';
+        second       <= '0';
+        next_first   <= '1';
+        first        <= '0';
+        standstill   <= '1';
+        running      <= '0';
+        exposing     <= '0';
+        lens_busy    <= '0';
+        lens_start   <= '0';
+        fire         <= '0';
+        fire_sync    <= '0';
+        late         <= '0';
+        boundary     <= '0';
       end if;
     end if;
 

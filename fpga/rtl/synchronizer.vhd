@@ -29,9 +29,9 @@ architecture rtl of synchronizer is
 
   -- Two flip-flops: the first may be metastable for a clock (ASYNC_REG stands in the constraints)
   signal metastable : std_ulogic;
-  signal stable : std_ulogic;
-  signal level  : std_ulogic;
-  signal count  : natural range 0 to GLITCH_CYCLES - 1;
+  signal stable     : std_ulogic;
+  signal level      : std_ulogic;
+  signal count      : natural range 0 to GLITCH_CYCLES - 1;
 
 begin
 
@@ -42,7 +42,7 @@ begin
 
     if rising_edge(clk) then
       metastable <= async_in;
-      stable <= metastable;
+      stable     <= metastable;
 
       if (stable = level) then
         count <= 0;
@@ -55,9 +55,9 @@ begin
 
       if (reset = '1') then
         metastable <= RESET_LEVEL;
-        stable <= RESET_LEVEL;
-        level  <= RESET_LEVEL;
-        count  <= 0;
+        stable     <= RESET_LEVEL;
+        level      <= RESET_LEVEL;
+        count      <= 0;
       end if;
     end if;
 

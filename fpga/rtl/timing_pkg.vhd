@@ -13,12 +13,21 @@ package timing_pkg is
   constant BITS_PER_WRITE : positive := 29;
 
   -- Clock cycles that `seconds` take, rounded up, at least 1
-  function to_cycles (clock_hz : positive; seconds : real) return positive;
+
+  function to_cycles (
+    clock_hz : positive;
+    seconds : real
+  ) return positive;
 
   -- Clock cycles of one period of `rate_hz`, rounded up: the rate is never exceeded
-  function to_period (clock_hz : positive; rate_hz : positive) return positive;
+
+  function to_period (
+    clock_hz : positive;
+    rate_hz : positive
+  ) return positive;
 
   -- Time units (microseconds) that `writes` byte writes on the lens bus take, rounded up
+
   function to_write_time (
     clock_hz : positive;
     tick_hz  : positive;
@@ -26,13 +35,26 @@ package timing_pkg is
     writes   : positive
   ) return positive;
 
-  function maximum_of (left, right : integer) return integer;
+  function maximum_of (
+    left,
+    right : integer
+  ) return integer;
 
   -- Delay of the edge that begins a trigger pulse, behind the opto-isolator
-  function leading_delay (active_low : std_ulogic; opto_on, opto_off : unsigned) return unsigned;
+
+  function leading_delay (
+    active_low : std_ulogic;
+    opto_on,
+    opto_off : unsigned
+  ) return unsigned;
 
   -- Delay of the edge that ends it
-  function trailing_delay (active_low : std_ulogic; opto_on, opto_off : unsigned) return unsigned;
+
+  function trailing_delay (
+    active_low : std_ulogic;
+    opto_on,
+    opto_off : unsigned
+  ) return unsigned;
 
 end package timing_pkg;
 
@@ -41,7 +63,10 @@ package body timing_pkg is
   -- Cycles between two writes in which the sequencer and the master hand over, with a reserve
   constant HANDOVER_CYCLES : positive := 6;
 
-  function to_cycles (clock_hz : positive; seconds : real) return positive is
+  function to_cycles (
+    clock_hz : positive;
+    seconds : real
+  ) return positive is
 
     constant EXACT   : real    := real(clock_hz) * seconds;
     constant ROUNDED : integer := integer(EXACT);
@@ -51,11 +76,15 @@ package body timing_pkg is
     if (real(ROUNDED) < EXACT - 1.0e-6) then
       return ROUNDED + 1;
     end if;
+
     return maximum_of(ROUNDED, 1);
 
   end function to_cycles;
 
-  function to_period (clock_hz : positive; rate_hz : positive) return positive is
+  function to_period (
+    clock_hz : positive;
+    rate_hz : positive
+  ) return positive is
   begin
 
     return (clock_hz + rate_hz - 1) / rate_hz;
@@ -77,32 +106,46 @@ package body timing_pkg is
 
   end function to_write_time;
 
-  function maximum_of (left, right : integer) return integer is
+  function maximum_of (
+    left,
+    right : integer
+  ) return integer is
   begin
 
     if (left > right) then
       return left;
     end if;
+
     return right;
 
   end function maximum_of;
 
-  function leading_delay (active_low : std_ulogic; opto_on, opto_off : unsigned) return unsigned is
+  function leading_delay (
+    active_low : std_ulogic;
+    opto_on,
+    opto_off : unsigned
+  ) return unsigned is
   begin
 
     if (active_low = '1') then
       return opto_off;
     end if;
+
     return opto_on;
 
   end function leading_delay;
 
-  function trailing_delay (active_low : std_ulogic; opto_on, opto_off : unsigned) return unsigned is
+  function trailing_delay (
+    active_low : std_ulogic;
+    opto_on,
+    opto_off : unsigned
+  ) return unsigned is
   begin
 
     if (active_low = '1') then
       return opto_on;
     end if;
+
     return opto_off;
 
   end function trailing_delay;

@@ -16,7 +16,7 @@ entity trigger_output is
   generic (
     CLOCK_HZ : positive := 125_000_000;
     -- Rate of the time unit of width, opto_on and opto_off: microseconds
-    TICK_HZ  : positive := 1_000_000
+    TICK_HZ : positive := 1_000_000
   );
   port (
     clk        : in    std_ulogic;

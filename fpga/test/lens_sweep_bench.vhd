@@ -10,7 +10,7 @@ entity lens_sweep_bench is
   generic (
     CLOCK_HZ : positive := 8_000_000;
     -- How many times faster than real the microsecond, the lens bus and the limits run
-    SCALE    : positive := 1
+    SCALE : positive := 1
   );
   port (
     reset_button : in    std_ulogic;
