@@ -89,10 +89,7 @@ const Kind kinds[] = {
      }},
 };
 
-class MetaBytes : public testing::TestWithParam<Kind> {
-protected:
-    static void SetUpTestSuite() { gst_init(nullptr, nullptr); }
-};
+class MetaBytes : public testing::TestWithParam<Kind> {};
 
 std::string name_of(const testing::TestParamInfo<Kind> &info)
 {
@@ -180,4 +177,12 @@ TEST(StackBytes, of_impossible_numbers_of_planes_are_refused)
         std::string error;
         EXPECT_TRUE(kinds[1].again(bytes, error).empty()) << int(planes);
     }
+}
+
+TEST(StackBytes, of_planes_beyond_the_stack_are_refused)
+{
+    Bytes bytes = stack_bytes();
+    bytes[19] = 0b1000; /* missing: plane 3 of 3 */
+    std::string error;
+    EXPECT_TRUE(kinds[1].again(bytes, error).empty());
 }

@@ -10,14 +10,6 @@
 
 namespace {
 
-class GStreamerEnvironment : public testing::Environment {
-public:
-    void SetUp() override { gst_init(nullptr, nullptr); }
-};
-
-[[maybe_unused]] testing::Environment *const environment =
-    testing::AddGlobalTestEnvironment(new GStreamerEnvironment);
-
 struct BufferUnref {
     void operator()(GstBuffer *buffer) const { gst_buffer_unref(buffer); }
 };

@@ -66,10 +66,11 @@ class Metas(unittest.TestCase):
     def test_caps_of_a_stack_are_parsed(self):
         caps = Gst.Caps.from_string(
             "video/x-focal-stack,format=GRAY8,width=100,height=10,planes=2,framerate=26/1")
-        is_stack, info = GstDff.FocalStackInfo.from_caps(caps)
-        self.assertTrue(is_stack)
+        info = GstDff.FocalStackInfo.new_from_caps(caps)
         self.assertEqual(info.planes, 2)
         self.assertEqual(info.get_size(), 2000)
+        with self.assertRaises(TypeError):
+            GstDff.FocalStackInfo.new_from_caps(Gst.Caps.from_string("video/x-raw,format=GRAY8"))
 
 
 if __name__ == "__main__":

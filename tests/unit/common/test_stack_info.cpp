@@ -9,8 +9,6 @@ namespace {
 
 class StackInfo : public testing::Test {
 protected:
-    static void SetUpTestSuite() { gst_init(nullptr, nullptr); }
-
     static GstFocalStackInfo parse(const char *text)
     {
         GstFocalStackInfo info;
