@@ -4,6 +4,7 @@
 
 #include "engine/engine_error.h"
 #include "engine/paper_method.h"
+#include "engine/volume_method.h"
 
 namespace dff {
 
@@ -27,12 +28,20 @@ std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackSha
     return device;
 }
 
+std::unique_ptr<DepthMethod> make_method(CommandQueue &queue, const StackShape &shape,
+                                         const DepthParameters &parameters)
+{
+    if (parameters.method == Method::Paper)
+        return std::make_unique<PaperMethod>(queue, shape, parameters);
+    return std::make_unique<VolumeMethod>(queue, shape, parameters);
+}
+
 } // namespace
 
 FocusEngine::FocusEngine(std::shared_ptr<Device> device, const StackShape &shape,
                          const DepthParameters &parameters)
     : device_(with_room(std::move(device), shape)), shape_(shape), queue_(device_), stack_(queue_, shape),
-      coder_(queue_, shape), method_(std::make_unique<PaperMethod>(queue_, shape, parameters))
+      coder_(queue_, shape), method_(make_method(queue_, shape, parameters))
 {
 }
 
@@ -51,9 +60,12 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
                       .confidence = outputs.confidence.pixels != nullptr,
                       .motion = outputs.motion.pixels != nullptr});
         read(method_->depth(), sizeof(cl_ushort), outputs.depth);
-        read(method_->sparse(), sizeof(cl_ushort), outputs.sparse);
-        read(method_->confidence(), sizeof(cl_uchar), outputs.confidence);
-        read(method_->motion(), sizeof(cl_uchar), outputs.motion);
+        if (outputs.sparse.pixels)
+            read(method_->sparse(), sizeof(cl_ushort), outputs.sparse);
+        if (outputs.confidence.pixels)
+            read(method_->confidence(), sizeof(cl_uchar), outputs.confidence);
+        if (outputs.motion.pixels)
+            read(method_->motion(), sizeof(cl_uchar), outputs.motion);
         queue_.commands().enqueueReadBuffer(method_->depth(), CL_FALSE, 0, sizeof first, &first);
         times_ = queue_.finish();
     });

@@ -128,21 +128,15 @@ static GstFlowReturn render(GstLensSweepTestSrc *self)
     return GST_FLOW_OK;
 }
 
-static void begin_depth(GstLensSweepTestSrc *self, GstPad *pad)
-{
-    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
-    if (gst_pad_has_current_caps(self->src_pad)) {
-        g_autoptr(GstCaps) caps = self->state->stream->depth_caps();
-        change_caps(pad, caps);
-    }
-    begin_segment(pad);
-}
-
 /* Whoever does not take the depth any more does not stop the pictures. */
 static GstFlowReturn push_depth(GstLensSweepTestSrc *self, GstPad *pad)
 {
-    begin_depth(self, pad);
-    const GstFlowReturn flow = gst_pad_push(pad, self->state->stream->depth());
+    TestStream &stream = *self->state->stream;
+    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
+    g_autoptr(GstCaps) caps = stream.depth_caps();
+    change_caps(pad, caps);
+    begin_segment(pad);
+    const GstFlowReturn flow = gst_pad_push(pad, stream.depth());
     return flow == GST_FLOW_NOT_NEGOTIATED || flow <= GST_FLOW_ERROR ? flow : GST_FLOW_OK;
 }
 
@@ -180,21 +174,19 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
     begin_stream(GST_ELEMENT(self), self->src_pad, "src", gst_util_group_id_next());
     if (stream.is_live() && !pacer.wait_until_playing())
         return GST_FLOW_FLUSHING;
+    if (eos_is_due(self))
+        return GST_FLOW_EOS;
     if (stream.at_sweep_start())
         take_changes(self);
 
     GstFlowReturn flow = GST_FLOW_OK;
     if (gst_pad_check_reconfigure(self->src_pad) || !gst_pad_has_current_caps(self->src_pad))
         flow = negotiate(self);
-    if (flow != GST_FLOW_OK)
-        return flow;
-    begin_segment(self->src_pad);
-    if (eos_is_due(self))
-        return GST_FLOW_EOS;
-    if (!stream.is_rendered())
+    if (flow == GST_FLOW_OK && !stream.is_rendered())
         flow = render(self);
     if (flow != GST_FLOW_OK)
         return flow;
+    begin_segment(self->src_pad);
 
     g_autoptr(GstBuffer) buffer = stream.frame();
     /* The picture leaves the camera at the end of its exposure. */
@@ -214,7 +206,7 @@ static void end_streams(GstLensSweepTestSrc *self)
 {
     g_autoptr(GstPad) depth_pad = ref_depth_pad(self);
     if (depth_pad) {
-        begin_depth(self, depth_pad);
+        begin_stream(GST_ELEMENT(self), depth_pad, "depth", group_of(self->src_pad));
         gst_pad_push_event(depth_pad, gst_event_new_eos());
     }
     gst_pad_push_event(self->src_pad, gst_event_new_eos());

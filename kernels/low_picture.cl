@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * Included by the kernels of method=volume: pictures at 1/SCALE of the stack's resolution.
+ *
+ * A low picture is float[height][stride]; cell (x, y) lies at y * stride + SIDE + x, so that every row has at least
+ * SIDE cells of room at both ends. Rows are worked on in vectors of 8 from x = 0; what the last vector writes beyond
+ * the width, mirror_sides replaces. A volume is `planes` such pictures one after the other. One work-item takes a row
+ * or a strip of rows: this is what vectorises on a CPU.
+ */
+#define SIDE 16
+
+typedef float8 float8_anywhere __attribute__((aligned(4)));
+#define CELLS(pointer) (*(__global float8_anywhere *)(pointer))
+#define READ_CELLS(pointer) (*(__global const float8_anywhere *)(pointer))
+
+/* Index i of n cells mirrored at the ends, the end cells repeated: -1 is 0, n is n - 1. */
+inline int reflect(int i, int n)
+{
+    i = i < 0 ? -1 - i : i;
+    i = i < n ? i : 2 * n - 1 - i;
+    return clamp(i, 0, n - 1);
+}
+
+/* What a stack's noise decides, computed on the device by noise.cl: see NoiseEstimate. */
+typedef struct {
+    float sigma; /* DN, the least over the planes */
+    float t;     /* sigma^2 / (sigma^2 + 1): 0 clean .. 1 noisy; constants slide with it */
+    int taps[4]; /* of the pre-blur, in 1/64: centre and three to each side; taps[0] = 64 is none */
+} Noise;
+
+/* A stack whose focus measure differs less than this over the planes, in DN, at every cell tells no depth. */
+#define LEAST_EVIDENCE 0.01f

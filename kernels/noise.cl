@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * Noise of a stack (Immerkaer 1996): sigma_z = 1.4826 median |K * luma_z| / 6, K = [1 -2 1] x [1 -2 1]; the least over
+ * the planes, because a blurred plane shows noise alone. Luma is BT.601 in DN, a subsample of the pixels is looked at.
+ */
+#include "low_picture.cl"
+
+#define BINS 1024
+#define BINS_A_DN 8
+
+inline float noise_luma_at(__global const uchar *stack, ulong2 rows, int4 channels, int x, int y)
+{
+#ifdef INTERLEAVED
+    __global const uchar *pixel = stack + rows.x + rows.y * (ulong)y + (ulong)x * channels.s0;
+    return 0.299f * pixel[channels.s1] + 0.587f * pixel[channels.s2] + 0.114f * pixel[channels.s3];
+#else
+    return luma_at(stack, rows, x, y);
+#endif
+}
+
+/* Median of a histogram of `count` values, in bins. */
+inline float median_bin(__global const uint *histogram, uint count)
+{
+    uint below = 0;
+    int bin = 0;
+    while (bin < BINS - 1 && 2 * (below + histogram[bin]) < count)
+        below += histogram[bin++];
+    return bin + (0.5f * count - below) / max(histogram[bin], 1u);
+}
+
+/* Work-items (1, planes); every step-th pixel in both directions. histograms[planes][BINS]. */
+__kernel void plane_noise(__global const uchar *stack, __global const ulong2 *rows, int4 channels,
+                          __global uint *histograms, __global float *sigmas, int width, int height, int step)
+{
+    const int z = (int)get_global_id(1);
+    __global uint *histogram = histograms + z * BINS;
+    for (int bin = 0; bin < BINS; bin++)
+        histogram[bin] = 0;
+
+    uint count = 0;
+    for (int y = 1; y < height - 1; y += step)
+        for (int x = 1; x < width - 1; x += step) {
+            float column[3];
+            for (int i = -1; i <= 1; i++)
+                column[i + 1] = noise_luma_at(stack, rows[z], channels, x + i, y - 1) -
+                                2.0f * noise_luma_at(stack, rows[z], channels, x + i, y) +
+                                noise_luma_at(stack, rows[z], channels, x + i, y + 1);
+            const float response = fabs(column[0] - 2.0f * column[1] + column[2]);
+            histogram[min((int)(response * BINS_A_DN), BINS - 1)]++;
+            count++;
+        }
+    sigmas[z] = 1.4826f / 6.0f / BINS_A_DN * median_bin(histogram, count);
+}
+
+/* One work-item. The pre-blur is a Gaussian of t (scale + 2) / 5 pixels, none below a quarter. */
+__kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale)
+{
+    float sigma = sigmas[0];
+    for (int z = 1; z < planes; z++)
+        sigma = min(sigma, sigmas[z]);
+    const float t = sigma * sigma / (sigma * sigma + 1.0f);
+    noise->sigma = sigma;
+    noise->t = t;
+
+    const float blur = t * (scale + 2) / 5.0f;
+    float weights[4], sum = -1.0f;
+    for (int i = 0; i < 4; i++) {
+        weights[i] = blur > 0.25f ? exp(-i * i / (2.0f * blur * blur)) : i == 0;
+        sum += 2.0f * weights[i];
+    }
+    int rest = 64;
+    for (int i = 3; i > 0; i--) {
+        noise->taps[i] = convert_int_rte(64.0f * weights[i] / sum);
+        rest -= 2 * noise->taps[i];
+    }
+    noise->taps[0] = rest;
+}

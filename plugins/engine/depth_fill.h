@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/cost_volume.h"
+#include "engine/semi_global_matching.h"
+
+namespace dff {
+
+/* Depth where the confidence is low, from around: see kernels/depth_fill.cl. */
+class DepthFill {
+public:
+    DepthFill(CommandQueue &queue, const LowShape &low);
+
+    /* Changes matching.u() in place. */
+    void run(SemiGlobalMatching &matching);
+
+    /* float: the 90th percentile of the confidence. */
+    const cl::Buffer &high_confidence() const { return high_confidence_; }
+
+private:
+    void smooth(const cl::Buffer &pair, const LowShape &low, const cl::Buffer &edges, cl_float lambda);
+
+    CommandQueue &queue_;
+    LowShape low_, transposed_;
+    cl::Kernel weigh_, smooth_columns_, fill_, quantile_;
+    cl::Buffer pair_, pair_transposed_, scratch_, high_confidence_;
+};
+
+} // namespace dff

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/cost_volume.h"
+
+namespace dff {
+
+/* A small picture that is sharp everywhere, by a depth: see kernels/guide_image.cl. */
+class GuideImage {
+public:
+    GuideImage(CommandQueue &queue, const LowShape &low);
+
+    /* At a first guess, denoised; its sides are mirrored. */
+    void run(const CostVolume &cost, const SmallPlanes &small, const NoiseEstimate &noise);
+
+    /* At the depth `u`, not denoised; the sides of all three are mirrored. */
+    void run_at(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise);
+
+    const cl::Buffer &guide() const { return guide_; }   /* low pictures [R, G, B] */
+    const cl::Buffer &nearer() const { return nearer_; } /* the least u around each cell */
+
+private:
+    CommandQueue &queue_;
+    LowShape low_;
+    LowFilter box_;
+    cl::Kernel cheapest_plane_, median_5x5_, nearest_3x3_, blend_planes_, denoise_;
+    cl::Buffer boxed_, between_, u_, median_, nearer_, blended_, guide_;
+};
+
+} // namespace dff

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/joint_upsampling.h"
+
+namespace dff {
+
+namespace {
+
+std::string build_options(PixelFormat format, cl_int scale)
+{
+    const std::string options = "-DSCALE=" + std::to_string(scale) + " " + Luma::build_options(format);
+    if (is_interleaved(format))
+        return options + " -DINTERLEAVED";
+    if (format == PixelFormat::I420)
+        return options + " -DCHROMA -DV_COMPONENT=2";
+    if (format == PixelFormat::Nv12)
+        return options + " -DCHROMA -DV_COMPONENT=1";
+    return options;
+}
+
+cl_int4 channels_of(PixelFormat format)
+{
+    if (format == PixelFormat::I420)
+        return {{1, 0, 1, 0}};
+    if (format == PixelFormat::Nv12)
+        return {{2, 0, 2, 1}};
+    return colour_channels(format);
+}
+
+} // namespace
+
+JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low)
+    : queue_(queue), shape_(shape), low_(low), channels_(channels_of(shape.format)),
+      u_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_float)))
+{
+    const Program program(queue.device(), "joint_upsampling", build_options(shape.format, low.scale));
+    upsample_ = program.kernel("upsample_depth");
+    upsample_confidence_ = program.kernel("upsample_confidence");
+    keep_confident_ = program.kernel("keep_confident");
+}
+
+void JointUpsampling::run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
+                          const NoiseEstimate &noise, const StackBuffer &stack)
+{
+    queue_.begin_stage("upsample");
+    queue_.run(upsample_, {1, static_cast<size_t>(low_.height) + 2}, low_u, guide.nearer(), guide.guide(),
+               noise.noise(), cost.evidence(), stack.bytes(), stack.layout(), channels_, u_,
+               static_cast<cl_int>(shape_.planes), static_cast<cl_int>(shape_.width),
+               static_cast<cl_int>(shape_.height), low_.width, low_.height, low_.stride);
+}
+
+void JointUpsampling::run_confidence(const SemiGlobalMatching &matching, const CostVolume &cost)
+{
+    if (!confidence_())
+        confidence_ = queue_.allocate(size_t{shape_.width} * shape_.height);
+    queue_.begin_stage("confidence");
+    queue_.run(upsample_confidence_, {1, shape_.height}, matching.confidence(), cost.evidence(), confidence_,
+               static_cast<cl_int>(shape_.width), low_.height, low_.stride);
+}
+
+void JointUpsampling::run_sparse(const DepthFill &fill, const ZEntropy *motion)
+{
+    if (!sparse_())
+        sparse_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_float));
+    queue_.begin_stage("sparse-depth");
+    queue_.run(keep_confident_, {1, shape_.height}, u_, confidence_, motion ? motion->moved() : confidence_,
+               cl_int{motion != nullptr}, fill.high_confidence(), sparse_, static_cast<cl_int>(shape_.width));
+}
+
+} // namespace dff

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/depth_fill.h"
+#include "engine/guide_image.h"
+#include "engine/z_entropy.h"
+
+namespace dff {
+
+/* Maps at full resolution from the low ones: see kernels/joint_upsampling.cl. */
+class JointUpsampling {
+public:
+    JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low);
+
+    /* `guide` at the low `u`. */
+    void run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
+             const NoiseEstimate &noise, const StackBuffer &stack);
+    void run_confidence(const SemiGlobalMatching &matching, const CostVolume &cost);
+
+    /* After both; leaves pixels that moved out, where `motion` is given. */
+    void run_sparse(const DepthFill &fill, const ZEntropy *motion);
+
+    const cl::Buffer &u() const { return u_; } /* float[height][width]; NAN without evidence */
+    const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
+    const cl::Buffer &sparse() const { return sparse_; }         /* float[height][width], NAN where unknown */
+
+private:
+    CommandQueue &queue_;
+    StackShape shape_;
+    LowShape low_;
+    cl_int4 channels_;
+    cl::Kernel upsample_, upsample_confidence_, keep_confident_;
+    cl::Buffer u_, confidence_, sparse_;
+};
+
+} // namespace dff

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/low_shape.h"
+
+#include "engine/engine_error.h"
+
+#include <utility>
+
+namespace dff {
+
+namespace {
+
+/* 4 at Full HD, 2 near VGA. */
+constexpr uint64_t pixels_for_scale_4 = 800 * 600 + 1;
+
+unsigned choose_scale(const StackShape &shape, unsigned wish)
+{
+    if (wish != 0 && wish != 2 && wish != 4 && wish != 8)
+        throw EngineError(EngineError::Kind::Failed,
+                          "The volume's scale can be 2, 4, 8 or 0 (by size), not " + std::to_string(wish));
+    if (wish != 0)
+        return wish;
+    return uint64_t{shape.width} * shape.height < pixels_for_scale_4 ? 2 : 4;
+}
+
+cl_int stride_for(cl_int width)
+{
+    return (width + 7) / 8 * 8 + 2 * LowShape::side;
+}
+
+} // namespace
+
+LowShape::LowShape(const StackShape &shape, unsigned wish)
+    : scale(static_cast<cl_int>(choose_scale(shape, wish))), width(static_cast<cl_int>(shape.width) / scale),
+      height(static_cast<cl_int>(shape.height) / scale), stride(stride_for(width)),
+      planes(static_cast<cl_int>(shape.planes))
+{
+}
+
+LowShape LowShape::transposed() const
+{
+    LowShape other = *this;
+    std::swap(other.width, other.height);
+    other.stride = stride_for(other.width);
+    return other;
+}
+
+cl::Buffer LowShape::allocate(CommandQueue &queue, size_t pictures) const
+{
+    const size_t bytes = pictures * height * stride * sizeof(cl_float);
+    cl::Buffer buffer = queue.allocate(bytes);
+    queue.commands().enqueueFillBuffer(buffer, cl_float{0}, 0, bytes);
+    return buffer;
+}
+
+} // namespace dff

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/opencl/command_queue.h"
+#include "engine/stack_shape.h"
+
+namespace dff {
+
+/* Pictures at 1/scale of a stack's resolution, as kernels/low_picture.cl lays them out. Pixels at the right
+ * and the bottom that do not fill a cell have none. */
+struct LowShape {
+    /* `scale` as of DepthParameters. Throws EngineError (Failed) if it is none of 0, 2, 4, 8. */
+    LowShape(const StackShape &shape, unsigned scale);
+
+    static constexpr cl_int side = 16; /* SIDE of low_picture.cl */
+
+    cl_int scale;
+    cl_int width, height; /* cells */
+    cl_int stride;        /* cells */
+    cl_int planes;
+
+    /* The same with rows and columns exchanged. */
+    LowShape transposed() const;
+
+    /* Room for `pictures` low pictures, all 0. */
+    cl::Buffer allocate(CommandQueue &queue, size_t pictures) const;
+
+    /* Work-items: a row each, of one picture or of several. */
+    cl::NDRange rows() const { return {1, static_cast<size_t>(height)}; }
+    cl::NDRange rows_of(size_t pictures) const { return {1, static_cast<size_t>(height), pictures}; }
+    cl::NDRange rows_of_planes() const { return rows_of(planes); }
+};
+
+} // namespace dff
