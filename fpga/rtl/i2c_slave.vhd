@@ -78,15 +78,15 @@ architecture rtl of i2c_slave is
   end function count_is_valid;
 
   function next_word (
-    word : natural range 0 to 127
+    from_word : natural range 0 to 127
   ) return natural is
   begin
 
-    if (word = 127) then
+    if (from_word = 127) then
       return 127;
     end if;
 
-    return word + 1;
+    return from_word + 1;
 
   end function next_word;
 
@@ -100,7 +100,7 @@ architecture rtl of i2c_slave is
     if (from_word + MAX_BLOCK_BYTES / 2 <= WORD_COUNT) then
       return MAX_BLOCK_BYTES;
     elsif (from_word < WORD_COUNT) then
-      return 2 * (WORD_COUNT - from_word);
+      return WORD_COUNT - from_word + WORD_COUNT - from_word;
     end if;
 
     return 0;

@@ -106,11 +106,11 @@ architecture rtl of register_file is
   signal read_shift       : std_ulogic_vector(1 to 2);
 
   function is_row (
-    number : natural
+    word : natural
   ) return boolean is
   begin
 
-    return number >= WORD_PLANE_CODE_A and number <= WORD_PLANE_SETTLE_US;
+    return word >= WORD_PLANE_CODE_A and word <= WORD_PLANE_SETTLE_US;
 
   end function is_row;
 
