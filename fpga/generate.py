@@ -104,9 +104,10 @@ class CppHeader(SweepGenerator):
 
     def get_code(self, **kwargs):
         registers = list(self.registers())
-        lines = [f"// {line}" for line in LICENSE]
-        lines += ["// clang-format off", "#pragma once", "", "#include <cstdint>", "", "namespace dff::sweep_registers {", "",
-                  "/// Bits of a word: `width` bits from bit `shift` up.", "struct Field {", "    unsigned shift;",
+        lines = [f"/* {LICENSE[0]}", *(f" * {line}" for line in LICENSE[1:])]
+        lines[-1] += " */"
+        lines += ["/* clang-format off */", "#pragma once", "", "#include <cstdint>", "", "namespace dff::sweep_registers {", "",
+                  "/* Bits of a word: `width` bits from bit `shift` up. */", "struct Field {", "    unsigned shift;",
                   "    unsigned width;", "",
                   "    constexpr std::uint16_t mask() const"
                   " { return static_cast<std::uint16_t>(((1u << width) - 1u) << shift); }",
@@ -114,15 +115,15 @@ class CppHeader(SweepGenerator):
                   " { return static_cast<std::uint16_t>((word & mask()) >> shift); }",
                   "    constexpr std::uint16_t place(unsigned value) const"
                   " { return static_cast<std::uint16_t>((value << shift) & mask()); }", "};", "",
-                  "/// Number of a word; it is the SMBus command as well.", "enum class Word : std::uint8_t {"]
+                  "/* Number of a word; it is the SMBus command as well. */", "enum class Word : std::uint8_t {"]
         for register in registers:
-            lines += [f"    /// {register.description}", f"    {register.name} = {register.index},"]
+            lines += [f"    /* {register.description} */", f"    {register.name} = {register.index},"]
         lines += ["};", "", f"inline constexpr unsigned word_count = {len(registers)};", ""]
         for register in registers:
             for field in register.fields:
-                lines += [f"/// {field.description}",
+                lines += [f"/* {field.description} */",
                           f"inline constexpr Field {register.name}_{field.name} {{{field.base_index}, {field.width}}};"]
-        lines += ["", "/// Words that have another value than 0 after reset."]
+        lines += ["", "/* Words that have another value than 0 after reset. */"]
         for register in registers:
             if default_of(register):
                 lines.append(f"inline constexpr std::uint16_t {register.name}_default = 0x{default_of(register):04x};")

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""The bytes that the C++ driver sends, recorded by its unit test, give the sweep they were meant to give."""
+
+from pathlib import Path
+
+import cocotb
+
+from bench import BIT_CYCLES, TICK_CYCLES, Bench
+from sweep_model import Plane, Table, expect
+from words import DEFAULT, WORD
+
+SWEEPS = 3
+
+
+def code(volts):
+    """MAX14574: 10 bits over 24.4 to 69.9 V."""
+    return int((float(volts) - 24.4) / 45.5 * 1023 + 0.5)
+
+
+def recording():
+    """(the table that was meant, the lines to play)."""
+    table, planes, lines = None, [], []
+    for line in Path(__file__).with_name("contract.txt").read_text(encoding="utf-8").splitlines():
+        kind, *rest = line.split()
+        fields = dict(item.split("=") for item in rest if "=" in item)
+        if kind == "table":
+            times = {name: int(value) for name, value in fields.items()}
+            table = dict(period_us=times["period"], exposure_us=times["exposure"], flyback_us=times["flyback"],
+                         trigger_width_us=times["width"], opto_on_us=times["opto_on"], opto_off_us=times["opto_off"])
+        elif kind == "plane":
+            planes.append(Plane(code(fields["volts_a"]), int(fields["delay"]), code(fields["volts_b"]),
+                                int(fields["settle"])))
+        elif kind != "#":
+            lines.append((kind, rest))
+    return Table(planes, **table), lines
+
+
+@cocotb.test()
+async def recorded_driver_gives_the_sweep_it_meant(dut):
+    bench = Bench(dut)
+    await bench.reset()
+    table, lines = recording()
+    seen = []
+    for kind, rest in lines:
+        if kind == "write":
+            await bench.host.write_bytes(bytes.fromhex(rest[0]))
+        elif kind == "read":
+            low, high = await bench.host.read_bytes(int(rest[0], 16), 2)
+            check_read(bench, int(rest[0], 16), high << 8 | low)
+        else:
+            await expectation(bench, table, " ".join(rest))
+            seen.append(" ".join(rest))
+    assert seen == ["rest", "sweeps", "rest", "sweeps with run", "rest"], "the recording is not whole"
+
+
+def check_read(bench, word, value):
+    if word in (WORD["identity"], WORD["version"]):
+        assert value == DEFAULT["identity" if word == WORD["identity"] else "version"]
+    elif word == WORD["error"]:
+        assert value == 0
+    elif word == WORD["sweep_count_low"]:
+        begun = len([level for _, level in bench.syncs if level])
+        assert begun - 1 <= value <= begun, "the sweep goes on while the word is read"
+
+
+async def expectation(bench, table, what):
+    if what == "rest":
+        await bench.until(bench.dut.busy, 0, 2_000)
+        for record in (bench.triggers, bench.lens.codes):
+            record.clear()
+        await bench.wait_us(2_000)
+        assert not bench.triggers
+        return
+    syncs = len(bench.syncs)
+    if what == "sweeps with run":
+        await bench.wait_us(2_000)
+        assert not bench.triggers, "sweeps without run"
+        bench.dut.run.value = 1
+    await bench.until_triggers(SWEEPS * len(table.planes), SWEEPS * 5_000)
+    await bench.wait_us(150)
+    older, bench.syncs[:] = bench.syncs[:syncs], bench.syncs[syncs:]
+    bench.check(table, expect(table, SWEEPS, TICK_CYCLES, BIT_CYCLES))
+    bench.syncs[:] = older + bench.syncs

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+namespace dff {
+
+/* A transfer that the other side did not acknowledge, or that the adapter could not do. */
+class I2cError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/* One slave on an I2C bus, by the SMBus protocols that the sweep sequencer speaks. Every call throws
+ * I2cError. */
+class I2cBus {
+public:
+    virtual ~I2cBus() = default;
+
+    /* SMBus read word: 16 bits, low byte first. */
+    virtual std::uint16_t read_word(std::uint8_t command) = 0;
+
+    /* SMBus write word: 16 bits, low byte first. */
+    virtual void write_word(std::uint8_t command, std::uint16_t value) = 0;
+
+    /* SMBus block write: the byte count, then 1 to 32 bytes. */
+    virtual void write_block(std::uint8_t command, std::span<const std::uint8_t> bytes) = 0;
+};
+
+} // namespace dff

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "sweep_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace dff {
+
+namespace {
+
+using std::chrono::microseconds;
+using sweep_registers::Word;
+
+constexpr double lowest_volts = 24.4;
+constexpr double highest_volts = 69.9;
+constexpr int highest_code = 1023;
+constexpr std::size_t fewest_planes = 2;
+constexpr std::size_t most_planes = 64;
+
+void require(bool good, const std::string &rule)
+{
+    if (!good) {
+        throw std::invalid_argument("sweep table: " + rule);
+    }
+}
+
+std::string text(microseconds time)
+{
+    return std::to_string(time.count()) + " us";
+}
+
+void require_range(const char *name, microseconds time, microseconds lowest, microseconds highest)
+{
+    require(time >= lowest && time <= highest,
+            std::string(name) + " is " + text(time) + ", not " + text(lowest) + " to " + text(highest));
+}
+
+std::uint16_t word(microseconds time)
+{
+    return static_cast<std::uint16_t>(time.count());
+}
+
+} // namespace
+
+std::uint16_t max14574_code(double volts)
+{
+    require(volts >= lowest_volts && volts <= highest_volts,
+            std::to_string(volts) + " V is outside of the 24.4 to 69.9 V of the lens driver");
+    return static_cast<std::uint16_t>(
+        std::lround((volts - lowest_volts) / (highest_volts - lowest_volts) * highest_code));
+}
+
+void check(const SweepTable &table, const LensTiming &timing)
+{
+    const microseconds longest{std::numeric_limits<std::uint16_t>::max()};
+    const microseconds longest_opto{std::numeric_limits<std::uint8_t>::max()};
+    const microseconds zero{0};
+
+    require(table.planes.size() >= fewest_planes && table.planes.size() <= most_planes,
+            std::to_string(table.planes.size()) + " planes, not 2 to 64");
+    require_range("period", table.period, zero, longest);
+    require_range("exposure", table.exposure, timing.stage, longest);
+    require_range("flyback", table.flyback, zero, longest);
+    require_range("trigger width", table.trigger_width, microseconds{1}, table.exposure);
+    require_range("opto-isolator on", table.opto_on, zero, longest_opto);
+    require_range("opto-isolator off", table.opto_off, zero, longest_opto);
+
+    const auto lead = table.trigger_active_low ? table.opto_off : table.opto_on;
+    const auto trail = table.trigger_active_low ? table.opto_on : table.opto_off;
+    require(table.trigger_width + lead > trail,
+            "the trigger width of " + text(table.trigger_width) + " is lost in the opto-isolator");
+
+    const auto gap = table.period - table.exposure;
+    for (std::size_t index = 0; index < table.planes.size(); ++index) {
+        const PlaneStep &plane = table.planes[index];
+        const std::string name = "plane " + std::to_string(index);
+        require_range((name + " delay").c_str(), plane.delay, zero, longest);
+        require_range((name + " settle").c_str(), plane.settle, zero, longest);
+        const auto needed = timing.gap + plane.delay + std::max(plane.settle, lead);
+        require(needed <= gap, name + " needs " + text(needed) +
+                                   " between two exposures, and period - exposure is " + text(gap));
+        max14574_code(plane.overdrive_volts);
+        max14574_code(plane.hold_volts);
+    }
+}
+
+std::vector<RegisterWrite> register_writes(const SweepTable &table)
+{
+    const auto shape =
+        static_cast<std::uint16_t>(sweep_registers::shape_triangle.place(table.triangle) |
+                                   sweep_registers::shape_trigger_active_low.place(table.trigger_active_low));
+    /* In the order of the words, so that one block carries them */
+    std::vector<RegisterWrite> writes{
+        {Word::planes,
+         {static_cast<std::uint16_t>(table.planes.size()), shape, word(table.period), word(table.exposure),
+          word(table.flyback), word(table.trigger_width), word(table.opto_on), word(table.opto_off)}}};
+    for (std::size_t index = 0; index < table.planes.size(); ++index) {
+        const PlaneStep &plane = table.planes[index];
+        writes.push_back({Word::plane_select,
+                          {static_cast<std::uint16_t>(index), max14574_code(plane.overdrive_volts),
+                           word(plane.delay), max14574_code(plane.hold_volts), word(plane.settle)}});
+    }
+    return writes;
+}
+
+} // namespace dff
