@@ -180,10 +180,11 @@ GstFlowReturn prepare_output_buffer(GstBaseTransform *base, GstBuffer *input, Gs
     return GST_FLOW_OK;
 }
 
-/* The pool's stack has its own layout; all else that is known of the stack holds of the aligned one. */
-gboolean transform_meta(GstBaseTransform *, GstBuffer *, GstMeta *meta, GstBuffer *)
+/* All that is known of the stack holds of the aligned one too, but for its layout, which the base class
+ * leaves out and the pool writes anew. */
+gboolean transform_meta(GstBaseTransform *, GstBuffer *, GstMeta *, GstBuffer *)
 {
-    return !gst_meta_api_type_has_tag(meta->info->api, g_quark_from_static_string(GST_META_TAG_MEMORY_STR));
+    return TRUE;
 }
 
 GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *output)
