@@ -256,6 +256,7 @@ GstPad *request_new_pad(GstElement *element, GstPadTemplate *templ, const gchar 
 void release_pad(GstElement *element, GstPad *pad)
 {
     GstFocalStackMux *self = GST_FOCAL_STACK_MUX(element);
+    self->state->core.close_input(input_of(pad));
     gst_pad_set_active(pad, FALSE);
     self->state->core.remove_input(pad);
     gst_element_remove_pad(element, pad);

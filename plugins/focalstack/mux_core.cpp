@@ -2,7 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/mux_core.h"
 
-#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -35,35 +34,17 @@ bool same_shape(const GstFocalStackInfo &a, const GstFocalStackInfo &b)
 
 } // namespace
 
-void MuxInput::reset()
-{
-    has_caps = false;
-    gst_video_info_init(&info);
-    gst_segment_init(&segment, GST_FORMAT_UNDEFINED);
-    numbering = {};
-    live.reset();
-    ended = false;
-}
-
 MuxInput &MuxCore::add_input(GstPad *pad, std::optional<unsigned> plane)
 {
-    const std::lock_guard lock(facts_);
-    MuxInput &input = *inputs_.emplace_back(std::make_unique<MuxInput>(pad, plane));
     if (plane)
         gate_.open(*plane);
-    return input;
+    return inputs_.add(pad, plane);
 }
 
-void MuxCore::remove_input(GstPad *pad)
+void MuxCore::close_input(MuxInput &input)
 {
-    const std::lock_guard lock(facts_);
-    const auto found =
-        std::find_if(inputs_.begin(), inputs_.end(), [pad](const auto &input) { return input->pad == pad; });
-    if (found == inputs_.end())
-        return;
-    if ((*found)->plane)
-        gate_.close(*(*found)->plane);
-    inputs_.erase(found);
+    if (input.plane)
+        gate_.close(*input.plane);
 }
 
 MuxStatistics MuxCore::statistics() const
@@ -84,42 +65,6 @@ void MuxCore::publish()
     published_ = counting_;
 }
 
-/* Either one linked pad with all planes, or a pad for each plane without a hole. */
-bool MuxCore::inputs_make_sense()
-{
-    bool all_in_one = false;
-    uint64_t linked = 0;
-    {
-        const std::lock_guard lock(facts_);
-        for (const auto &input : inputs_) {
-            if (!gst_pad_is_linked(input->pad))
-                continue;
-            if (input->plane)
-                linked |= plane_bit(*input->plane);
-            else
-                all_in_one = true;
-        }
-        side_by_side_ = linked != 0;
-    }
-
-    if (all_in_one && linked != 0) {
-        GST_ELEMENT_ERROR(element_, CORE, PAD,
-                          ("Both the pad \"sink\" and pads of single planes are linked."),
-                          ("Link either \"sink\", for the frames of all planes in the order of time, or "
-                           "\"sink_0\", \"sink_1\", ..., one for each plane."));
-        return false;
-    }
-    if (settings_.planes == 0 && (linked & (linked + 1)) != 0) {
-        GST_ELEMENT_ERROR(
-            element_, CORE, PAD,
-            ("The pad \"sink_%d\" is not linked, but one of a farther plane is.", std::countr_one(linked)),
-            ("Link the pads from \"sink_0\" on, one for each plane, or set planes if the pad is "
-             "linked later."));
-        return false;
-    }
-    return true;
-}
-
 bool MuxCore::start(const MuxSettings &settings)
 {
     const std::lock_guard lock(stream_);
@@ -128,19 +73,17 @@ bool MuxCore::start(const MuxSettings &settings)
     publish();
     output_.restart();
     own_stream_begun_ = false;
-    gate_.close_all();
-    gate_.let_in();
+    inputs_.reset();
     {
         const std::lock_guard facts(facts_);
         latency_ = 0;
         origin_ns_.reset();
-        for (const auto &input : inputs_) {
-            input->reset();
-            if (input->plane && gst_pad_is_linked(input->pad))
-                gate_.open(*input->plane);
-        }
     }
-    return inputs_make_sense();
+    gate_.close_all();
+    for (uint64_t linked = inputs_.linked_planes(); linked != 0; linked &= linked - 1)
+        gate_.open(static_cast<unsigned>(std::countr_zero(linked)));
+    gate_.let_in();
+    return inputs_.make_sense(element_, settings_.planes);
 }
 
 void MuxCore::stop()
@@ -157,15 +100,18 @@ void MuxCore::end_flush(MuxInput &input)
     gate_.let_in();
     if (input.plane)
         gate_.open(*input.plane);
-    const std::lock_guard facts(facts_);
+    inputs_.reopen(input);
     input.numbering = {};
-    input.ended = false;
+    gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
+    const std::lock_guard facts(facts_);
     origin_ns_.reset();
 }
 
 void MuxCore::begin(MuxInput &input)
 {
     const std::lock_guard lock(stream_);
+    gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
+    inputs_.reopen(input);
     if (!input.plane)
         finish();
     else if (!std::exchange(own_stream_begun_, true))
@@ -207,15 +153,9 @@ bool MuxCore::pass_gap(MuxInput &input, GstEvent *gap)
 
 bool MuxCore::end(MuxInput &input)
 {
-    if (input.plane)
-        gate_.close(*input.plane);
-    {
-        const std::lock_guard facts(facts_);
-        input.ended = true;
-        for (const auto &other : inputs_)
-            if (!other->ended && gst_pad_is_linked(other->pad))
-                return false;
-    }
+    close_input(input);
+    if (!inputs_.end(input))
+        return false;
 
     const std::lock_guard lock(stream_);
     const uint64_t dropped = counting_.dropped;
@@ -283,7 +223,7 @@ bool MuxCore::wait_for_others(MuxInput &input, uint64_t sweep)
         input.live = live;
     }
     gate_.arrive(*input.plane, sweep);
-    return *input.live || gate_.wait(sweep);
+    return *input.live || gate_.wait(*input.plane);
 }
 
 GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)
@@ -307,14 +247,9 @@ GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)
 unsigned MuxCore::planes_for(const MuxInput &input, const GstFocusInfo &focus)
 {
     unsigned planes = settings_.planes;
-    if (input.plane) {
-        const std::lock_guard lock(facts_);
-        for (const auto &other : inputs_)
-            if (settings_.planes == 0 && other->plane && gst_pad_is_linked(other->pad))
-                planes = std::max(planes, *other->plane + 1);
-    } else if (planes == 0)
-        planes = focus.planes;
-    else if (focus.planes != 0 && focus.planes != planes) {
+    if (planes == 0)
+        planes = input.plane ? static_cast<unsigned>(std::bit_width(inputs_.linked_planes())) : focus.planes;
+    else if (!input.plane && focus.planes != 0 && focus.planes != planes) {
         GST_ELEMENT_ERROR(
             element_, STREAM, FORMAT,
             ("The frames are of sweeps of %u planes, but planes=%u was asked for.", focus.planes, planes),
@@ -351,12 +286,12 @@ GstFlowReturn MuxCore::use_shape(const GstFocalStackInfo &shape)
     const GstFlowReturn flow = finish();
     if (flow != GST_FLOW_OK)
         return flow;
-    if (!inputs_make_sense())
+    if (!inputs_.make_sense(element_, settings_.planes))
         return GST_FLOW_ERROR;
     if (!output_.set_shape(shape))
         return GST_FLOW_NOT_NEGOTIATED;
 
-    const unsigned allowance = side_by_side_ ? shape.planes - 1 : StackMaker::default_allowance;
+    const unsigned allowance = inputs_.linked_planes() ? shape.planes - 1 : StackMaker::default_allowance;
     maker_ = StackMaker::create(settings_.window, shape, settings_.on_missing, allowance, counting_);
     update_latency(shape);
     return GST_FLOW_OK;
@@ -418,10 +353,11 @@ void MuxCore::update_latency(const GstFocalStackInfo &shape)
 {
     const GstClockTime stack_period = frame_period(shape.frame);
     const bool rolling = settings_.window == StackWindow::Rolling;
-    const GstClockTime period = side_by_side_ || rolling ? stack_period : stack_period / shape.planes;
-    GstClockTime latency = side_by_side_ ? period : period * (shape.planes - 1);
+    const bool side_by_side = inputs_.linked_planes() != 0;
+    const GstClockTime period = side_by_side || rolling ? stack_period : stack_period / shape.planes;
+    GstClockTime latency = side_by_side ? period : period * (shape.planes - 1);
     if (settings_.on_missing != OnMissing::Drop && !rolling)
-        latency += side_by_side_ ? period : period * (StackMaker::default_allowance + 1);
+        latency += side_by_side ? period : period * (StackMaker::default_allowance + 1);
     {
         const std::lock_guard lock(facts_);
         if (latency == std::exchange(latency_, latency))

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "focalstack/frame_numbering.h"
+#include "focalstack/mux_inputs.h"
 #include "focalstack/mux_output.h"
 #include "focalstack/stack_maker.h"
 #include "focalstack/sweep_gate.h"
@@ -12,7 +12,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 namespace dff {
 
@@ -22,24 +21,6 @@ struct MuxSettings {
     StackWindow window = StackWindow::Sweep;
 };
 
-/* What the mux knows of one of its sink pads. */
-struct MuxInput {
-    MuxInput(GstPad *sink_pad, std::optional<unsigned> of_plane) : pad(sink_pad), plane(of_plane) { reset(); }
-    void reset();
-
-    GstPad *pad;
-    std::optional<unsigned> plane; /* empty: frames of all planes come here */
-
-    /* These belong to the pad's streaming thread. */
-    bool has_caps;
-    GstVideoInfo info;
-    GstSegment segment;
-    FrameNumbering numbering;
-    std::optional<bool> live;
-
-    bool ended; /* guarded by MuxCore's facts_ */
-};
-
 /* The mux behind its pads. */
 class MuxCore {
 public:
@@ -47,7 +28,8 @@ public:
 
     /* Any thread. */
     MuxInput &add_input(GstPad *pad, std::optional<unsigned> plane);
-    void remove_input(GstPad *pad);
+    void close_input(MuxInput &input);
+    void remove_input(GstPad *pad) { inputs_.remove(pad); }
     MuxStatistics statistics() const;
     GstClockTime latency() const;
 
@@ -55,7 +37,7 @@ public:
     bool start(const MuxSettings &settings);
     void stop();
 
-    /* The input's streaming thread. */
+    /* The input's streaming thread. A closed input's take() returns at once. */
     GstFlowReturn take(MuxInput &input, GstBuffer *buffer);
     bool set_caps(MuxInput &input, const GstCaps *caps);
     void set_segment(MuxInput &input, const GstSegment &segment);
@@ -69,7 +51,6 @@ public:
     void end_flush(MuxInput &input);
 
 private:
-    bool inputs_make_sense();
     bool place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame);
     uint64_t number(MuxInput &input, const TimeSpan &time);
     bool wait_for_others(MuxInput &input, uint64_t sweep);
@@ -85,8 +66,11 @@ private:
 
     GstElement *element_;
 
-    /* stream_ is held while frames are put in place and stacks are sent; facts_ for a few lines, also while
-     * stream_ is held; the gate waits without either. */
+    MuxInputs inputs_;
+    SweepGate gate_;
+
+    /* stream_ is held while frames are put in place and stacks are sent; inputs, gate and facts_ are locked
+     * for a few lines, also while stream_ is held. Who waits at the gate holds nothing. */
     std::mutex stream_;
     MuxSettings settings_;
     MuxOutput output_;
@@ -95,13 +79,9 @@ private:
     bool own_stream_begun_ = false;
 
     mutable std::mutex facts_;
-    bool side_by_side_ = false; /* the planes have a pad each */
-    std::vector<std::unique_ptr<MuxInput>> inputs_;
     MuxStatistics published_;
     GstClockTime latency_ = 0;
     std::optional<uint64_t> origin_ns_; /* running time of the first frame on a pad of its own */
-
-    SweepGate gate_;
 };
 
 } // namespace dff

@@ -33,11 +33,12 @@ void SweepGate::arrive(unsigned plane, uint64_t sweep)
     moved_.notify_all();
 }
 
-bool SweepGate::wait(uint64_t sweep)
+bool SweepGate::wait(unsigned plane)
 {
     std::unique_lock lock(mutex_);
-    moved_.wait(lock, [&] { return shut_ || all_are_near(sweep); });
-    return !shut_;
+    const Input &own = inputs_.at(plane);
+    moved_.wait(lock, [&] { return shut_ || !own.open || all_are_near(own.sweep.value_or(0)); });
+    return !shut_ && own.open;
 }
 
 bool SweepGate::all_are_near(uint64_t sweep) const

@@ -26,8 +26,9 @@ public:
     /* This plane has come to `sweep`. */
     void arrive(unsigned plane, uint64_t sweep);
 
-    /* Blocks until every open plane has come to the sweep before `sweep`. False if the gate was shut. */
-    bool wait(uint64_t sweep);
+    /* Blocks until every open plane has come as far as the sweep before this plane's. False if the gate was
+     * shut or the plane closed. */
+    bool wait(unsigned plane);
 
     /* Wakes who waits, and lets nobody wait until let_in(). */
     void shut();

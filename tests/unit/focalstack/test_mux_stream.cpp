@@ -233,6 +233,28 @@ TEST(MuxStream, a_flush_leaves_nothing_of_the_old_sweep)
     EXPECT_EQ(count_in(harness.get(), "lost"), 0u);
 }
 
+TEST(MuxStream, the_segment_comes_again_after_a_flush)
+{
+    const GstVideoInfo info = video_info("GRAY8", 32, 16);
+    const auto harness = new_mux();
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    segment.start = 5 * GST_SECOND;
+    for (unsigned i = 0; i < 2; i++) {
+        gst_harness_push_event(harness.get(), gst_event_new_flush_start());
+        gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
+        gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+        push_sweep(harness.get(), info, i);
+        GstEvent *event = gst_pad_get_sticky_event(harness->sinkpad, GST_EVENT_SEGMENT, 0);
+        ASSERT_NE(event, nullptr);
+        const GstSegment *sent = nullptr;
+        gst_event_parse_segment(event, &sent);
+        EXPECT_EQ(sent->start, 5 * GST_SECOND);
+        gst_event_unref(event);
+    }
+}
+
 TEST(MuxStream, gaps_do_not_stall)
 {
     const GstVideoInfo info = video_info("GRAY8", 32, 16);

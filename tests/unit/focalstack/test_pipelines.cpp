@@ -7,6 +7,7 @@
 #include <gst/app/gstappsink.h>
 #include <gst/app/gstappsrc.h>
 #include <gtest/gtest.h>
+#include <stdexcept>
 
 namespace {
 
@@ -19,7 +20,8 @@ public:
     {
         g_autoptr(GError) error = nullptr;
         pipeline_ = gst_parse_launch(description.c_str(), &error);
-        EXPECT_EQ(error, nullptr) << error->message;
+        if (error)
+            throw std::runtime_error(error->message);
         in_ = gst_bin_get_by_name(GST_BIN(pipeline_), "in");
         out_ = gst_bin_get_by_name(GST_BIN(pipeline_), "out");
         gst_element_set_state(pipeline_, GST_STATE_PLAYING);
@@ -180,6 +182,24 @@ TEST(Pipelines, one_source_a_plane_may_end_early)
     GstElement *mux = gst_bin_get_by_name(GST_BIN(pipeline.bin()), "m");
     EXPECT_EQ(count_of(mux, "stacks"), 5u);
     EXPECT_EQ(count_of(mux, "lost"), 45u);
+    gst_object_unref(mux);
+}
+
+TEST(Pipelines, a_source_may_be_taken_away_while_it_waits_for_the_others)
+{
+    Pipeline pipeline("videotestsrc name=fast ! m.sink_0 "
+                      "videotestsrc is-live=false num-buffers=20 ! identity sleep-time=50000 ! m.sink_1 "
+                      "focalstackmux name=m planes=2 ! fakesink");
+    GstElement *mux = gst_bin_get_by_name(GST_BIN(pipeline.bin()), "m");
+    GstElement *fast = gst_bin_get_by_name(GST_BIN(pipeline.bin()), "fast");
+    GstPad *pad = gst_element_get_static_pad(mux, "sink_0");
+    g_usleep(100000);
+    gst_element_release_request_pad(mux, pad);
+    gst_element_set_state(fast, GST_STATE_NULL);
+    gst_bin_remove(GST_BIN(pipeline.bin()), fast);
+    EXPECT_NE(pipeline.wait_for_end(), "neither end nor error");
+    gst_object_unref(pad);
+    gst_object_unref(fast);
     gst_object_unref(mux);
 }
 

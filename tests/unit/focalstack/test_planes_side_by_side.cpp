@@ -49,7 +49,7 @@ TEST(SweepGate, a_fast_source_waits_for_a_slow_one)
     gate.open(1);
     gate.arrive(1, 0);
     gate.arrive(0, 2);
-    auto fast = std::async(std::launch::async, [&] { return gate.wait(2); });
+    auto fast = std::async(std::launch::async, [&] { return gate.wait(0); });
     EXPECT_EQ(fast.wait_for(50ms), std::future_status::timeout);
     gate.arrive(1, 1);
     EXPECT_EQ(fast.wait_for(5s), std::future_status::ready);
@@ -62,7 +62,7 @@ TEST(SweepGate, nobody_waits_for_a_source_that_ended)
     gate.open(0);
     gate.open(1);
     gate.arrive(0, 7);
-    auto other = std::async(std::launch::async, [&] { return gate.wait(7); });
+    auto other = std::async(std::launch::async, [&] { return gate.wait(0); });
     gate.close(1);
     ASSERT_EQ(other.wait_for(5s), std::future_status::ready);
     EXPECT_TRUE(other.get());
@@ -72,8 +72,22 @@ TEST(SweepGate, shutting_wakes_who_waits)
 {
     SweepGate gate;
     gate.open(0);
-    auto waiting = std::async(std::launch::async, [&] { return gate.wait(1); });
+    gate.open(1);
+    gate.arrive(0, 1);
+    auto waiting = std::async(std::launch::async, [&] { return gate.wait(0); });
     gate.shut();
+    ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
+    EXPECT_FALSE(waiting.get());
+}
+
+TEST(SweepGate, a_source_that_is_taken_away_does_not_wait)
+{
+    SweepGate gate;
+    gate.open(0);
+    gate.open(1);
+    gate.arrive(0, 5);
+    auto waiting = std::async(std::launch::async, [&] { return gate.wait(0); });
+    gate.close(0);
     ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
     EXPECT_FALSE(waiting.get());
 }
