@@ -19,8 +19,8 @@
  *
  * ## Example pipeline
  * |[
- * gst-launch-1.0 lenssweeptestsrc num-buffers=60 breathing=0.03 ! focalstackmux ! queue ! focalstackalign !
- * queue ! dffdepth ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=60 breathing=0.03 ! focalstackmux ! queue ! \
+ *     focalstackalign ! queue ! dffdepth ! fakesink
  * ]| computes depth from sweeps whose planes differ in zoom by 3 percent.
  */
 #include "focalstack/focalstackalign.h"
