@@ -13,8 +13,8 @@
  *
  * ## Example pipeline
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=4 ! m.sink_0  videotestsrc num-buffers=4 pattern=ball ! m.sink_1
- * focalstackmux name=m ! focalstackdemux ! videoconvert ! pngenc ! multifilesink location=plane-%d.png
+ * gst-launch-1.0 videotestsrc num-buffers=4 ! m.sink_0  videotestsrc num-buffers=4 pattern=ball ! m.sink_1 \
+ *     focalstackmux name=m ! focalstackdemux ! videoconvert ! pngenc ! multifilesink location=plane-%d.png
  * ]| writes eight pictures, from the two planes in turn.
  */
 #include "focalstack/focalstackdemux.h"

@@ -23,8 +23,8 @@
  *
  * ## Example pipeline
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=4 ! m.sink_0  videotestsrc num-buffers=4 pattern=ball ! m.sink_1
- * focalstackmux name=m ! fakesink silent=false -v
+ * gst-launch-1.0 videotestsrc num-buffers=4 ! m.sink_0  videotestsrc num-buffers=4 pattern=ball ! m.sink_1 \
+ *     focalstackmux name=m ! fakesink silent=false -v
  * ]| makes four stacks of two planes.
  */
 #include "focalstack/focalstackmux.h"

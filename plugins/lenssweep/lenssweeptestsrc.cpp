@@ -20,8 +20,8 @@
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! videoconvert ! autovideosink
  * ]|
  * |[
- * gst-launch-1.0 lenssweeptestsrc name=rig num-buffers=60 noise=moderate ! queue ! fakesink rig.depth ! queue
- * ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc name=rig num-buffers=60 noise=moderate ! queue ! fakesink \
+ *     rig.depth ! queue ! fakesink
  * ]|
  */
 #include "lenssweeptestsrc.h"
