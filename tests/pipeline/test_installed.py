@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""test_installed.py SOURCE_ROOT BUILD_ROOT: installs into a temporary folder and uses what is there, as an application would."""
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE, BUILD = (pathlib.Path(path) for path in sys.argv[1:3])
+SECONDS = 120
+
+
+def run(*command, **options):
+    finished = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=SECONDS, **options)
+    if finished.returncode != 0:
+        raise AssertionError(f'{command} ended with status {finished.returncode}\n{finished.stdout}')
+    return finished.stdout
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        root = pathlib.Path(cls.folder.name)
+        run('meson', 'install', '-C', BUILD, '--no-rebuild', '--quiet', '--destdir', root)
+        pkg_config = next(root.rglob('gstreamer-dff-1.0.pc'))
+        text = pkg_config.read_text()
+        prefix = root / re.search('^prefix=/(.*)$', text, re.MULTILINE)[1]
+        pkg_config.write_text(re.sub('^prefix=.*$', f'prefix={prefix}', text, flags=re.MULTILINE))
+        library = pkg_config.parent.parent
+        cls.environment = {name: value for name, value in os.environ.items() if not name.startswith('GST_')}
+        cls.environment.update(
+            PKG_CONFIG_PATH=str(pkg_config.parent), LD_LIBRARY_PATH=str(library),
+            GI_TYPELIB_PATH=str(library / 'girepository-1.0'), GST_PLUGIN_PATH=str(library / 'gstreamer-1.0'),
+            GST_REGISTRY=str(root / 'registry.bin'), POCL_CACHE_DIR=os.environ.get('POCL_CACHE_DIR', str(root / 'pocl')))
+
+    def assert_ten_distances(self, output, unit):
+        lines = re.findall(rf'^sweep \d+: ([0-9.]+) {unit}$', output, re.MULTILINE)
+        self.assertEqual(len(lines), 10, output)
+        self.assertTrue(all(0.2 <= float(value) <= 5 for value in lines), output)
+
+    def test_c_program_reads_the_depth(self):
+        flags = run('pkg-config', '--cflags', '--libs', 'gstreamer-dff-1.0', 'gstreamer-app-1.0', env=self.environment)
+        program = pathlib.Path(self.folder.name, 'read_depth')
+        run('cc', '-Wall', '-Werror', SOURCE / 'pipelines/embed/read_depth.c', '-o', program, *shlex.split(flags),
+            env=self.environment)
+        self.assert_ten_distances(run(program, env=self.environment), 'dioptres')
+
+    def test_python_program_reads_the_depth(self):
+        output = run(sys.executable, SOURCE / 'pipelines/embed/read_depth.py', env=self.environment)
+        self.assert_ten_distances(output, 'm')
+
+    def test_every_plug_in_is_installed_and_loads(self):
+        for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose'):
+            run('gst-inspect-1.0', element, env=self.environment)
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1])
