@@ -10,8 +10,9 @@
  * the same, the mean of its planes. Put a queue on every branch.
  *
  * |[
- * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! tee name=s  s. ! queue ! dffdepth ! queue
- * ! c.depth s. ! queue ! c.stack  aifcompose name=c ! videoconvert ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! tee name=s \
+ *     s. ! queue ! dffdepth ! queue ! c.depth  s. ! queue ! c.stack \
+ *     aifcompose name=c ! videoconvert ! fakesink
  * ]|
  */
 #include "aifcompose.h"
