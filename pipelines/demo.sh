@@ -16,10 +16,11 @@ photos=${1:+$(realpath -- "$1")}
 cd "$(dirname "$0")/.."
 . pipelines/setup.sh
 
-planes=10 stacks=50 width=640 height=480 rate=25
-# Warm is near: depth is smaller where it is nearer, so it is turned over before it is coloured.
-colour_map="videoconvert ! video/x-raw,format=BGRx ! solarize start=0 threshold=0 end=256 !
-    videoconvert ! coloreffects preset=heat"
+planes=10 stacks=40 width=640 height=480 rate=25
+# Warm is near: depth is smaller where it is nearer, so it is turned over before it is coloured. The colorimetry keeps it
+# off 0 and 255, where solarize would wrap around.
+colour_map="videoconvert ! video/x-raw,format=BGRx,colorimetry=2:1:5:1 !
+    solarize start=0 threshold=0 end=256 ! coloreffects preset=heat"
 
 fail() {
     verdict="FAILED: $*"
@@ -76,7 +77,7 @@ simulated_sweep() {
     result="$(awk "BEGIN { printf \"%.1f\", $stacks / $(seconds) }") stacks/s"
     say "$result"
     say "Recording the pictures and the video, with an object that moves"
-    launch "$(graph "$camera motion=1 ! $raw ! focalstackmux") $(pictures "")"
+    launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux") $(pictures "")"
 }
 
 # photo_size FILE DECODER: WIDTHxHEIGHT
