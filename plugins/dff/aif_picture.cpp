@@ -68,7 +68,8 @@ void AifPicture::ensure_composer()
 {
     if (composer_)
         return;
-    composer_ = std::make_unique<AifComposer>(device_, stack_shape(stack_));
+    translate_errors(*device_,
+                     [&] { composer_ = std::make_unique<AifComposer>(device_, stack_shape(stack_)); });
     scale_.reset();
     no_depth_.assign(
         static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&stack_.frame)) * GST_VIDEO_INFO_HEIGHT(&stack_.frame), 0);

@@ -90,17 +90,20 @@ static std::optional<GstBuffer *> matching_depth(GstAifCompose *self, GstBuffer 
 
     while (GstBuffer *depth = gst_aggregator_pad_peek_buffer(self->depth_pad)) {
         const GstDepthMeta *depth_meta = gst_buffer_get_depth_meta(depth);
+        const bool is_gap = gst_buffer_get_size(depth) == 0;
         const bool comparable = stack_meta && depth_meta;
-        if (!comparable || depth_meta->sequence == stack_meta->sequence) {
+        if (!is_gap && (!comparable || depth_meta->sequence == stack_meta->sequence)) {
             gst_aggregator_pad_drop_buffer(self->depth_pad);
             return depth;
         }
-        const bool later = depth_meta->sequence > stack_meta->sequence;
+        const bool later = comparable && depth_meta->sequence > stack_meta->sequence;
         gst_buffer_unref(depth);
         if (later)
             return nullptr;
-        GST_DEBUG_OBJECT(self, "dropping a depth map without its stack");
+        GST_DEBUG_OBJECT(self, "dropping a depth map without its stack, or a gap");
         gst_aggregator_pad_drop_buffer(self->depth_pad);
+        if (is_gap && !stack_meta)
+            return nullptr; /* the k-th with the k-th */
     }
     if (gst_aggregator_pad_is_eos(self->depth_pad))
         return nullptr;
@@ -136,6 +139,8 @@ static GstFlowReturn compose_and_push(GstAifCompose *self, GstBuffer *stack, Gst
         const GstClockTime start = gst_util_get_timestamp();
         GstBuffer *picture = state.picture.compose(stack, depth, blend_of(state));
         account(self, gst_util_get_timestamp() - start, depth != nullptr);
+        gst_aggregator_selected_samples(GST_AGGREGATOR(self), GST_BUFFER_PTS(picture), GST_BUFFER_DTS(picture),
+                                        GST_BUFFER_DURATION(picture), nullptr);
         return gst_aggregator_finish_buffer(GST_AGGREGATOR(self), picture);
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
@@ -154,6 +159,10 @@ static GstFlowReturn gst_aif_compose_aggregate(GstAggregator *aggregator, gboole
         return gst_aggregator_pad_is_eos(self->stack_pad) ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
     if (!self->state->has_stack_caps)
         return GST_FLOW_NOT_NEGOTIATED;
+    if (gst_buffer_get_size(stack) == 0) { /* a gap */
+        gst_aggregator_pad_drop_buffer(self->stack_pad);
+        return GST_FLOW_OK;
+    }
     const std::optional<GstBuffer *> match = matching_depth(self, stack);
     if (!match)
         return GST_AGGREGATOR_FLOW_NEED_DATA;

@@ -25,6 +25,7 @@
 #include "gstcl/mapped_stack.h"
 #include "stack_depth.h"
 
+#include <algorithm>
 #include <gst/base/gstflowcombiner.h>
 #include <gst/dff/dff.h>
 #include <memory>
@@ -155,7 +156,10 @@ static GstFlowReturn push(State &state, dff::DepthMaps &maps)
     GstFlowReturn flow = GST_FLOW_NOT_LINKED;
     maps.push([&](GstPad *pad, GstFlowReturn pushed) {
         const std::lock_guard lock(state.mutex);
-        flow = gst_flow_combiner_update_pad_flow(state.flows, pad, pushed);
+        const bool released = std::none_of(state.outputs.begin(), state.outputs.end(),
+                                           [&](const auto &output) { return output->pad() == pad; });
+        if (!released) /* the flow of a pad that has gone in the meantime is nobody's */
+            flow = gst_flow_combiner_update_pad_flow(state.flows, pad, pushed);
     });
     return flow;
 }

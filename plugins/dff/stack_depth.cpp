@@ -27,7 +27,9 @@ void StackDepth::set_settings(const DepthSettings &settings)
 GstDepthInfo StackDepth::prepare(GstBuffer *stack, guint64 index)
 {
     if (!engine_) {
-        engine_ = std::make_unique<FocusEngine>(device_, stack_shape(stack_), settings_.parameters);
+        translate_errors(*device_, [&] {
+            engine_ = std::make_unique<FocusEngine>(device_, stack_shape(stack_), settings_.parameters);
+        });
         encoder_.reset();
     }
     PlanePositions positions = plane_positions(stack);

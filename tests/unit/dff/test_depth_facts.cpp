@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "gstcl/depth_facts.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+using namespace dff;
+
+TEST(DepthFacts, auto_is_dioptre_where_powers_are_known)
+{
+    EXPECT_EQ(make_encoder(GST_DEPTH_UNIT_AUTO, 3, {{3, 2, 1}, {}}).scale().unit, DepthUnit::Dioptre);
+    EXPECT_EQ(make_encoder(GST_DEPTH_UNIT_AUTO, 3, {}).scale().unit, DepthUnit::Index);
+}
+
+TEST(DepthFacts, powers_out_of_order_are_refused)
+{
+    EXPECT_THROW(make_encoder(GST_DEPTH_UNIT_DIOPTRE, 3, {{1, 2, 3}, {}}), std::invalid_argument);
+    EXPECT_THROW(make_encoder(GST_DEPTH_UNIT_MICROMETRE, 3, {{}, {5, 5, 6}}), std::invalid_argument);
+}
+
+TEST(DepthFacts, what_is_written_can_be_read_in_every_unit)
+{
+    const PlanePositions positions{{5.0, 3.0, 2.5, 1.0}, {0.0, 10.0, 30.0, 35.0}};
+    for (const GstDepthUnit unit : {GST_DEPTH_UNIT_INDEX, GST_DEPTH_UNIT_DIOPTRE, GST_DEPTH_UNIT_MILLIMETRE,
+                                    GST_DEPTH_UNIT_MICROMETRE}) {
+        const DepthEncoder written = make_encoder(unit, 4, positions);
+        const DepthEncoder read = encoder_of(depth_info(written, positions), 4, positions);
+        for (double z = 0.0; z <= 3.0; z += 0.1)
+            EXPECT_NEAR(read.decode(written.encode(z)).value(), z, 0.02);
+    }
+}
+
+TEST(DepthFacts, a_reader_without_powers_takes_the_planes_as_even)
+{
+    const PlanePositions even{{4.0, 3.0, 2.0, 1.0}, {}};
+    const DepthEncoder written = make_encoder(GST_DEPTH_UNIT_DIOPTRE, 4, even);
+    const DepthEncoder read = encoder_of(depth_info(written, even), 4, {});
+    EXPECT_NEAR(read.decode(written.encode(1.25)).value(), 1.25, 1e-3);
+}
+
+TEST(DepthFacts, a_stack_tells_its_planes_only_when_it_knows_all)
+{
+    gst_init(nullptr, nullptr);
+    g_autoptr(GstBuffer) stack = gst_buffer_new();
+    EXPECT_EQ(plane_positions(stack), PlanePositions());
+    GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, 0, 2);
+    GstFocusInfo focus;
+    gst_focus_info_init(&focus);
+    focus.power = 2.0;
+    gst_focal_stack_meta_set_focus(meta, 0, &focus);
+    EXPECT_TRUE(plane_positions(stack).powers.empty());
+    focus.power = 1.0;
+    gst_focal_stack_meta_set_focus(meta, 1, &focus);
+    EXPECT_EQ(plane_positions(stack).powers, (std::vector<double>{2.0, 1.0}));
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "test_pipeline.h"
+
+#include <gtest/gtest.h>
+
+using dff::run;
+using dff::TestPipeline;
+
+namespace {
+
+const std::string sweep =
+    "lenssweeptestsrc num-buffers=30 ! video/x-raw,width=128,height=96 ! focalstackmux ! dffdepth name=d ";
+
+} // namespace
+
+TEST(DffDepthOutputs, every_map_has_a_picture_a_stack)
+{
+    TestPipeline pipeline(sweep + "! queue ! appsink name=depth sync=false "
+                                  "d.sparse ! queue ! appsink name=sparse sync=false "
+                                  "d.confidence ! queue ! appsink name=confidence sync=false "
+                                  "d.motion ! queue ! appsink name=motion sync=false");
+    pipeline.play();
+    for (const char *sink : {"depth", "sparse", "confidence", "motion"}) {
+        const std::vector<GstSample *> samples = pipeline.pull_all(sink);
+        EXPECT_EQ(samples.size(), 5u) << sink;
+        for (GstSample *sample : samples) {
+            const GstStructure *caps = gst_caps_get_structure(gst_sample_get_caps(sample), 0);
+            const bool is_depth = g_str_equal(sink, "depth") || g_str_equal(sink, "sparse");
+            EXPECT_STREQ(gst_structure_get_string(caps, "format"), is_depth ? "GRAY16_LE" : "GRAY8");
+            EXPECT_EQ(gst_buffer_get_depth_meta(gst_sample_get_buffer(sample)) != nullptr, is_depth);
+            gst_sample_unref(sample);
+        }
+    }
+}
+
+TEST(DffDepthOutputs, sparse_has_holes_and_the_dense_map_has_none)
+{
+    TestPipeline pipeline(
+        sweep + "! queue ! appsink name=depth sync=false d.sparse ! queue ! appsink name=sparse sync=false");
+    pipeline.play();
+    const auto zeros = [&](const char *sink) {
+        g_autoptr(GstSample) sample = pipeline.pull(sink);
+        GstMapInfo map;
+        gst_buffer_map(gst_sample_get_buffer(sample), &map, GST_MAP_READ);
+        size_t count = 0;
+        for (size_t i = 0; i < map.size; i += 2)
+            count += map.data[i] == 0 && map.data[i + 1] == 0;
+        gst_buffer_unmap(gst_sample_get_buffer(sample), &map);
+        return count;
+    };
+    EXPECT_EQ(zeros("depth"), 0u);
+    const size_t unknown = zeros("sparse");
+    EXPECT_GT(unknown, 128u * 96 / 2);
+    EXPECT_LT(unknown, 128u * 96);
+}
+
+TEST(DffDepthOutputs, a_request_pad_that_is_not_linked_does_no_harm)
+{
+    TestPipeline pipeline(sweep + "! appsink name=depth sync=false");
+    GstPad *pad = gst_element_request_pad_simple(pipeline.element("d"), "confidence");
+    ASSERT_NE(pad, nullptr);
+    pipeline.play();
+    const std::vector<GstSample *> samples = pipeline.pull_all("depth");
+    EXPECT_EQ(samples.size(), 5u);
+    for (GstSample *sample : samples)
+        gst_sample_unref(sample);
+    gst_element_release_request_pad(pipeline.element("d"), pad);
+    gst_object_unref(pad);
+}
+
+TEST(DffDepthOutputs, a_request_pad_can_come_and_go_while_it_runs)
+{
+    TestPipeline pipeline("lenssweeptestsrc num-buffers=240 ! video/x-raw,width=96,height=64 ! focalstackmux "
+                          "! dffdepth name=d ! appsink name=depth sync=false max-buffers=2 "
+                          "queue name=q ! fakesink name=extra async=false sync=false");
+    pipeline.play();
+    gst_sample_unref(pipeline.pull("depth"));
+    for (int i = 0; i < 5; i++) {
+        GstPad *pad = gst_element_request_pad_simple(pipeline.element("d"), "motion");
+        g_autoptr(GstPad) peer = gst_element_get_static_pad(pipeline.element("q"), "sink");
+        ASSERT_EQ(gst_pad_link(pad, peer), GST_PAD_LINK_OK);
+        for (int stack = 0; stack < 3; stack++)
+            gst_sample_unref(pipeline.pull("depth"));
+        gst_pad_unlink(pad, peer);
+        gst_element_release_request_pad(pipeline.element("d"), pad);
+        gst_object_unref(pad);
+    }
+    const std::vector<GstSample *> rest = pipeline.pull_all("depth");
+    EXPECT_EQ(rest.size(), 40u - 1 - 15);
+    for (GstSample *sample : rest)
+        gst_sample_unref(sample);
+}
+
+TEST(DffDepthOutputs, one_more_of_the_same_pad_is_refused)
+{
+    TestPipeline pipeline(sweep + "! fakesink");
+    GstPad *pad = gst_element_request_pad_simple(pipeline.element("d"), "sparse");
+    EXPECT_EQ(gst_element_request_pad_simple(pipeline.element("d"), "sparse"), nullptr);
+    gst_element_release_request_pad(pipeline.element("d"), pad);
+    gst_object_unref(pad);
+}
+
+TEST(DffDepthOutputs, only_the_confidence_linked_is_enough)
+{
+    EXPECT_TRUE(run("lenssweeptestsrc num-buffers=12 ! focalstackmux ! dffdepth name=d d.confidence ! queue "
+                    "! fakesink")
+                    .end_of_stream);
+}
+
+TEST(DffDepthOutputs, nothing_linked_says_so)
+{
+    EXPECT_FALSE(run("lenssweeptestsrc num-buffers=12 ! focalstackmux ! dffdepth").error.empty());
+}
