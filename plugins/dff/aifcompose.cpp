@@ -139,8 +139,8 @@ static GstFlowReturn compose_and_push(GstAifCompose *self, GstBuffer *stack, Gst
         const GstClockTime start = gst_util_get_timestamp();
         GstBuffer *picture = state.picture.compose(stack, depth, blend_of(state));
         account(self, gst_util_get_timestamp() - start, depth != nullptr);
-        gst_aggregator_selected_samples(GST_AGGREGATOR(self), GST_BUFFER_PTS(picture), GST_BUFFER_DTS(picture),
-                                        GST_BUFFER_DURATION(picture), nullptr);
+        gst_aggregator_selected_samples(GST_AGGREGATOR(self), GST_BUFFER_PTS(picture),
+                                        GST_BUFFER_DTS(picture), GST_BUFFER_DURATION(picture), nullptr);
         return gst_aggregator_finish_buffer(GST_AGGREGATOR(self), picture);
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);

@@ -68,10 +68,11 @@ void install_depth_properties(GObjectClass *object_class)
     install(property::EntropyBits,
             g_param_spec_float(
                 "entropy-bits", "Entropy bits",
-                "Entropy of a pixel's luma along the planes, in bits over bins of 32 DN, above which it "
-                "moved during the sweep. Lower finds more movement and takes more of the blur for it; "
-                "it cannot exceed log2 of the planes",
-                0.0f, 3.0f, p.entropy_bits, playing));
+                "Entropy of a pixel's luma along the planes, in bits over bins of 16 DN, above which it "
+                "moved during the sweep; it cannot exceed log2 of the planes. 2 finds a third of the "
+                "moving pixels and takes one in a hundred still ones for moving, 1.5 two thirds and six "
+                "in a hundred",
+                0.0f, 4.0f, p.entropy_bits, playing));
     install(property::SigmaXy,
             g_param_spec_uint("sigma-xy", "Sigma xy",
                               "How far depth spreads into unknown pixels: size of a bilateral cell in pixels",

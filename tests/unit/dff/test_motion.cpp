@@ -52,8 +52,8 @@ std::vector<bool> passed_by_the_object(const std::string &motion)
 
 TEST(Motion, the_motion_pad_finds_the_moving_object)
 {
-    const std::vector<bool> passed = passed_by_the_object("60");
-    const std::vector<guint8> moved = motion_map("60", "1.5");
+    const std::vector<bool> passed = passed_by_the_object("4");
+    const std::vector<guint8> moved = motion_map("4", "2.0");
     size_t object = 0, found = 0, still = 0, alarms = 0;
     for (size_t i = 0; i < passed.size(); i++) {
         object += passed[i];
@@ -65,13 +65,12 @@ TEST(Motion, the_motion_pad_finds_the_moving_object)
     const double recall = static_cast<double>(found) / static_cast<double>(object);
     const double false_alarms = static_cast<double>(alarms) / static_cast<double>(still);
     std::printf("recall %.1f %%, false alarms %.1f %%\n", 100 * recall, 100 * false_alarms);
-    EXPECT_GT(recall, 0.25);
-    EXPECT_LT(false_alarms, 0.05);
-    EXPECT_GT(recall, 5 * false_alarms);
+    EXPECT_GT(recall, 0.3);
+    EXPECT_LT(false_alarms, 0.03);
 }
 
 TEST(Motion, a_lower_threshold_finds_more)
 {
     const auto count = [](const std::vector<guint8> &map) { return std::count(map.begin(), map.end(), 255); };
-    EXPECT_GT(count(motion_map("60", "1.0")), count(motion_map("60", "2.0")));
+    EXPECT_GT(count(motion_map("4", "1.5")), count(motion_map("4", "2.0")));
 }

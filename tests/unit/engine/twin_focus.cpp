@@ -138,9 +138,9 @@ std::vector<uint8_t> z_entropy(const Volume &luma, float threshold_bits)
     std::vector<uint8_t> moved;
     for (unsigned y = 0; y < luma.height; y++)
         for (unsigned x = 0; x < luma.width; x++) {
-            std::array<double, 8> histogram{};
+            std::array<double, 16> histogram{};
             for (unsigned z = 0; z < luma.planes; z++)
-                histogram[static_cast<unsigned>(luma.at(x, y, z)) / 32] += 1.0 / luma.planes;
+                histogram[static_cast<unsigned>(luma.at(x, y, z)) / 16] += 1.0 / luma.planes;
             double entropy = 0.0;
             for (const double p : histogram)
                 entropy -= p > 0.0 ? p * std::log2(p) : 0.0;
