@@ -128,15 +128,21 @@ static GstFlowReturn render(GstLensSweepTestSrc *self)
     return GST_FLOW_OK;
 }
 
+static void begin_depth(GstLensSweepTestSrc *self, GstPad *pad)
+{
+    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
+    if (gst_pad_has_current_caps(self->src_pad)) {
+        g_autoptr(GstCaps) caps = self->state->stream->depth_caps();
+        change_caps(pad, caps);
+    }
+    begin_segment(pad);
+}
+
 /* Whoever does not take the depth any more does not stop the pictures. */
 static GstFlowReturn push_depth(GstLensSweepTestSrc *self, GstPad *pad)
 {
-    TestStream &stream = *self->state->stream;
-    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
-    g_autoptr(GstCaps) caps = stream.depth_caps();
-    change_caps(pad, caps);
-    begin_segment(pad);
-    const GstFlowReturn flow = gst_pad_push(pad, stream.depth());
+    begin_depth(self, pad);
+    const GstFlowReturn flow = gst_pad_push(pad, self->state->stream->depth());
     return flow == GST_FLOW_NOT_NEGOTIATED || flow <= GST_FLOW_ERROR ? flow : GST_FLOW_OK;
 }
 
@@ -174,19 +180,21 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
     begin_stream(GST_ELEMENT(self), self->src_pad, "src", gst_util_group_id_next());
     if (stream.is_live() && !pacer.wait_until_playing())
         return GST_FLOW_FLUSHING;
-    if (eos_is_due(self))
-        return GST_FLOW_EOS;
     if (stream.at_sweep_start())
         take_changes(self);
 
     GstFlowReturn flow = GST_FLOW_OK;
     if (gst_pad_check_reconfigure(self->src_pad) || !gst_pad_has_current_caps(self->src_pad))
         flow = negotiate(self);
-    if (flow == GST_FLOW_OK && !stream.is_rendered())
-        flow = render(self);
     if (flow != GST_FLOW_OK)
         return flow;
     begin_segment(self->src_pad);
+    if (eos_is_due(self))
+        return GST_FLOW_EOS;
+    if (!stream.is_rendered())
+        flow = render(self);
+    if (flow != GST_FLOW_OK)
+        return flow;
 
     g_autoptr(GstBuffer) buffer = stream.frame();
     /* The picture leaves the camera at the end of its exposure. */
@@ -206,7 +214,7 @@ static void end_streams(GstLensSweepTestSrc *self)
 {
     g_autoptr(GstPad) depth_pad = ref_depth_pad(self);
     if (depth_pad) {
-        begin_stream(GST_ELEMENT(self), depth_pad, "depth", group_of(self->src_pad));
+        begin_depth(self, depth_pad);
         gst_pad_push_event(depth_pad, gst_event_new_eos());
     }
     gst_pad_push_event(self->src_pad, gst_event_new_eos());
@@ -235,7 +243,7 @@ static gboolean activate_mode(GstPad *pad, GstObject *parent, GstPadMode mode, g
         return FALSE;
     self->state->pacer.set_flushing(!active);
     if (active)
-        return gst_pad_start_task(pad, loop, self, nullptr);
+        return TRUE;
     GST_OBJECT_LOCK(self);
     self->state->stop.request_stop();
     GST_OBJECT_UNLOCK(self);
@@ -287,6 +295,9 @@ static GstStateChangeReturn change_state(GstElement *element, GstStateChange tra
         return result;
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
         self->state->stream.reset();
+    /* Not when the src pad is activated: the depth pad is activated after it. */
+    if (transition == GST_STATE_CHANGE_READY_TO_PAUSED)
+        gst_pad_start_task(self->src_pad, loop, self, nullptr);
     const bool paused =
         transition == GST_STATE_CHANGE_READY_TO_PAUSED || transition == GST_STATE_CHANGE_PLAYING_TO_PAUSED;
     return paused && self->state->stream->is_live() ? GST_STATE_CHANGE_NO_PREROLL : result;

@@ -49,6 +49,8 @@ MovingOverlay::MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball, 
 {
     const double u = MovingBall::depth * depth_to_position;
     for (const PlaneView &view : views) {
+        if (stop.stop_requested())
+            return;
         Band band{view, renderer.blur_diameter(u, view.focus), {}, {}, {}};
         const cv::Rect middle = reach_of(band, {picture_.width / 2.0, ball_.center(0.0).y});
         band.where = cv::Rect(0, middle.y, picture_.width, middle.height);

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "support.h"
+
+#include <gst/check/gstharness.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+/* lenssweeptag planes=4 with raw frames going in. */
+class Tag : public testing::Test {
+protected:
+    void start(const char *element = "lenssweeptag planes=4 near=3 far=0",
+               const char *caps = "video/x-raw,format=GRAY8,width=8,height=4,framerate=100/1")
+    {
+        harness_ = gst_harness_new_parse(element);
+        gst_element_set_bus(harness_->element, bus_);
+        gst_harness_set_src_caps_str(harness_, caps);
+    }
+
+    void TearDown() override
+    {
+        gst_element_set_bus(harness_->element, nullptr);
+        gst_harness_teardown(harness_);
+        gst_object_unref(bus_);
+    }
+
+    static GstBuffer *new_frame() { return gst_buffer_new_allocate(nullptr, 32, nullptr); }
+
+    static GstBuffer *new_numbered_frame(guint64 number)
+    {
+        GstBuffer *frame = new_frame();
+        GST_BUFFER_OFFSET(frame) = number;
+        GST_BUFFER_OFFSET_END(frame) = number + 1;
+        return frame;
+    }
+
+    GstFocusInfo push(GstBuffer *frame)
+    {
+        GstFocusInfo focus;
+        gst_focus_info_init(&focus);
+        g_autoptr(GstBuffer) out = gst_harness_push_and_pull(harness_, frame);
+        const GstFocusMeta *meta = out ? gst_buffer_get_focus_meta(out) : nullptr;
+        EXPECT_NE(meta, nullptr);
+        if (meta)
+            gst_focus_meta_get_focus(meta, &focus);
+        return focus;
+    }
+
+    guint64 count(GstBuffer *frame)
+    {
+        const GstFocusInfo focus = push(frame);
+        return focus.sweep * focus.planes + focus.plane;
+    }
+
+    bool warned()
+    {
+        g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING);
+        return message != nullptr;
+    }
+
+    GstHarness *harness_ = nullptr;
+    GstBus *bus_ = gst_bus_new();
+};
+
+} // namespace
+
+TEST_F(Tag, frames_cycle_through_the_planes)
+{
+    start();
+    for (guint64 i = 0; i < 10; i++) {
+        const GstFocusInfo focus = push(new_frame());
+        EXPECT_EQ(focus.sweep, i / 4);
+        EXPECT_EQ(focus.plane, i % 4);
+        EXPECT_EQ(focus.planes, 4U);
+        EXPECT_DOUBLE_EQ(focus.power, 3.0 - focus.plane);
+        EXPECT_EQ(focus.code, -1);
+        EXPECT_EQ(focus.frame_id, i);
+        EXPECT_EQ(focus.exposure, GST_CLOCK_TIME_NONE);
+    }
+    EXPECT_FALSE(warned());
+}
+
+TEST_F(Tag, powers_can_be_given_one_by_one)
+{
+    start("lenssweeptag powers=\"<4.0,1.0,0.5>\"");
+    EXPECT_DOUBLE_EQ(push(new_frame()).power, 4.0);
+    EXPECT_DOUBLE_EQ(push(new_frame()).power, 1.0);
+    const GstFocusInfo last = push(new_frame());
+    EXPECT_DOUBLE_EQ(last.power, 0.5);
+    EXPECT_EQ(last.planes, 3U);
+}
+
+TEST_F(Tag, pixels_are_not_copied_even_of_a_buffer_of_others)
+{
+    start();
+    GstBuffer *frame = new_frame();
+    g_autoptr(GstBuffer) kept = gst_buffer_ref(frame);
+    g_autoptr(GstBuffer) out = gst_harness_push_and_pull(harness_, frame);
+    EXPECT_NE(out, kept);
+    EXPECT_EQ(gst_buffer_peek_memory(out, 0), gst_buffer_peek_memory(kept, 0));
+    EXPECT_EQ(gst_buffer_get_focus_meta(kept), nullptr);
+}
+
+TEST_F(Tag, an_older_label_is_replaced)
+{
+    start();
+    GstBuffer *frame = new_frame();
+    GstFocusInfo old;
+    gst_focus_info_init(&old);
+    old.sweep = 77;
+    gst_buffer_add_focus_meta(frame, &old);
+    g_autoptr(GstBuffer) out = gst_harness_push_and_pull(harness_, frame);
+    EXPECT_EQ(gst_buffer_get_n_meta(out, GST_FOCUS_META_API_TYPE), 1U);
+    EXPECT_EQ(gst_buffer_get_focus_meta(out)->sweep, 0U);
+}
+
+TEST_F(Tag, a_lost_frame_leaves_its_plane_out)
+{
+    start();
+    EXPECT_EQ(count(new_numbered_frame(11)), 0U);
+    EXPECT_EQ(count(new_numbered_frame(12)), 1U);
+    const GstFocusInfo focus = push(new_numbered_frame(14));
+    EXPECT_EQ(focus.plane, 3U);
+    EXPECT_EQ(focus.frame_id, 14U);
+    EXPECT_FALSE(warned());
+}
+
+TEST_F(Tag, a_gap_is_placed_by_its_time)
+{
+    start();
+    for (const guint64 frame : {0U, 1U, 6U}) {
+        GstBuffer *buffer = new_frame();
+        GST_BUFFER_PTS(buffer) = frame * GST_SECOND / 100 + (frame == 6 ? 2 * GST_MSECOND : 0);
+        if (frame == 6)
+            GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_DISCONT);
+        EXPECT_EQ(count(buffer), frame);
+    }
+    EXPECT_FALSE(warned());
+}
+
+TEST_F(Tag, a_guess_is_said_aloud)
+{
+    start();
+    count(new_frame());
+    GstBuffer *frame = new_frame();
+    GST_BUFFER_FLAG_SET(frame, GST_BUFFER_FLAG_DISCONT);
+    EXPECT_EQ(count(frame), 4U);
+    EXPECT_TRUE(warned());
+}
+
+TEST_F(Tag, after_a_flush_a_new_sweep_begins)
+{
+    start();
+    count(new_frame());
+    EXPECT_EQ(count(new_frame()), 1U);
+    gst_harness_push_event(harness_, gst_event_new_flush_start());
+    gst_harness_push_event(harness_, gst_event_new_flush_stop(TRUE));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(harness_, gst_event_new_segment(&segment));
+    EXPECT_EQ(count(new_frame()), 4U);
+    EXPECT_FALSE(warned());
+}
+
+TEST_F(Tag, bayer_pictures_pass)
+{
+    start("lenssweeptag planes=4", "video/x-bayer,format=rggb,width=8,height=4,framerate=100/1");
+    EXPECT_EQ(count(new_frame()), 0U);
+}
+
+TEST(TagErrors, rising_powers_are_refused_with_what_to_do)
+{
+    Pipeline pipeline("videotestsrc num-buffers=3 ! lenssweeptag near=0 far=2 ! fakesink");
+    const std::string error = pipeline.run();
+    EXPECT_NE(error.find("near is greater than far"), std::string::npos) << error;
+}
+
+TEST(TagPipelines, labels_survive_conversion_and_scaling)
+{
+    Pipeline pipeline("videotestsrc num-buffers=5 ! lenssweeptag planes=2 ! videoconvert ! videoscale ! "
+                      "video/x-raw,format=RGB,width=100,height=100 ! appsink name=out sync=false");
+    pipeline.set_state(GST_STATE_PLAYING);
+    const auto samples = pipeline.pull_all("out");
+    ASSERT_EQ(samples.size(), 5U);
+    for (guint i = 0; i < 5; i++) {
+        ASSERT_NE(focus_of(samples[i]), nullptr);
+        EXPECT_EQ(focus_of(samples[i])->plane, i % 2);
+    }
+}
+
+TEST(TagPipelines, the_documented_pipeline_runs)
+{
+    Pipeline pipeline(
+        "videotestsrc num-buffers=60 ! lenssweeptag planes=10 near=4 far=0.5 ! fakesink silent=false");
+    EXPECT_EQ(pipeline.run(), "");
+}
