@@ -20,7 +20,7 @@ GstClockTime frame_period(const GstVideoInfo &info)
 
 GstFocalStackInfo stack_shape(const GstVideoInfo &frame, unsigned planes, unsigned frames_a_stack)
 {
-    GstFocalStackInfo shape{frame, planes};
+    GstFocalStackInfo shape{planes, frame};
     if (frames_a_stack > 1)
         gst_util_fraction_multiply(frame.fps_n, frame.fps_d, 1, static_cast<gint>(frames_a_stack),
                                    &shape.frame.fps_n, &shape.frame.fps_d);

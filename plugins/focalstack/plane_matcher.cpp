@@ -77,7 +77,7 @@ bool is_plausible(const cv::Matx23d &affine, cv::Size size)
 /* Where each corner of `from` lies in `to`, by pyramidal Lucas-Kanade there and back again. */
 PlaneMatch follow_corners(const MatchablePlane &from, const MatchablePlane &to)
 {
-    const cv::TermCriteria criteria{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.003};
+    const cv::TermCriteria criteria{cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 0.01};
     const cv::Point2d centre{(from.size().width - 1) / 2.0, (from.size().height - 1) / 2.0};
     std::vector<cv::Point2f> there, back;
     std::vector<uchar> found_there, found_back;
@@ -85,8 +85,10 @@ PlaneMatch follow_corners(const MatchablePlane &from, const MatchablePlane &to)
 
     cv::calcOpticalFlowPyrLK(from.pyramid(), to.pyramid(), from.corners(), there, found_there, cv::noArray(),
                              window, pyramid_levels, criteria);
-    cv::calcOpticalFlowPyrLK(to.pyramid(), from.pyramid(), there, back, found_back, cv::noArray(), window,
-                             pyramid_levels, criteria);
+    /* On the way back the finest level is enough: it is known where it should end. */
+    back = from.corners();
+    cv::calcOpticalFlowPyrLK(to.pyramid(), from.pyramid(), there, back, found_back, cv::noArray(), window, 0,
+                             criteria, cv::OPTFLOW_USE_INITIAL_FLOW);
 
     for (std::size_t i = 0; i < there.size(); i++) {
         if (!found_there[i] || !found_back[i] || cv::norm(back[i] - from.corners()[i]) > max_round_trip)

@@ -165,7 +165,8 @@ TEST(StackAligner, a_stack_without_texture_is_left_alone)
 
 TEST(StackAligner, a_stack_of_noise_is_left_alone)
 {
-    expect_left_alone(make_flat_stack(8.0));
+    for (const double noise : {1.0, 8.0, 40.0})
+        expect_left_alone(make_flat_stack(noise));
 }
 
 TEST(StackAligner, a_black_plane_goes_with_its_neighbours)

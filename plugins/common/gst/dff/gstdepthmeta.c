@@ -92,7 +92,7 @@ static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buff
         return TRUE;
 
     gst_depth_meta_get_depth((GstDepthMeta *)meta, &info);
-    if (GST_VIDEO_META_TRANSFORM_IS_SCALE(type))
+    if (GST_VIDEO_META_TRANSFORM_IS_SCALE(type) && info.has_intrinsics)
         scale_intrinsics(&info, data);
     return gst_buffer_add_depth_meta(destination, &info) != NULL;
 }
@@ -111,7 +111,7 @@ const GstMetaInfo *gst_depth_meta_get_info(void)
 
 /**
  * gst_depth_info_init:
- * @info: (out caller-allocates): a #GstDepthInfo
+ * @info: a #GstDepthInfo
  *
  * Sets every field to "unknown": unit index, no range, no intrinsics.
  */
@@ -185,10 +185,12 @@ static const gchar *unit_nick(GstDepthUnit unit)
  * @caps: writable caps of the stream
  *
  * Writes the fields depth-unit, depth-near and depth-far, which raw transforms and payloaders keep. near and
- * far stand there only where they are known.
+ * far stand there only where they are known; older ones are removed.
  */
 void gst_depth_info_to_caps(const GstDepthInfo *info, GstCaps *caps)
 {
+    for (guint i = 0; i < gst_caps_get_size(caps); i++)
+        gst_structure_remove_fields(gst_caps_get_structure(caps, i), "depth-near", "depth-far", NULL);
     gst_caps_set_simple(caps, "depth-unit", G_TYPE_STRING, unit_nick(info->unit), NULL);
     if (!isnan(info->near) && !isnan(info->far))
         gst_caps_set_simple(caps, "depth-near", G_TYPE_DOUBLE, info->near, "depth-far", G_TYPE_DOUBLE,
@@ -279,7 +281,7 @@ GstDepthMeta *gst_buffer_add_depth_meta_from_bytes(GstBuffer *buffer, GBytes *by
     if (!gst_dff_bytes_open(&reader, bytes, KIND, error))
         return NULL;
     gst_depth_info_init(&info);
-    if (!gst_dff_bytes_close(read_depth(&info, &reader), bytes, error))
+    if (!gst_dff_bytes_close(&reader, read_depth(&info, &reader), error))
         return NULL;
     return gst_buffer_add_depth_meta(buffer, &info);
 }

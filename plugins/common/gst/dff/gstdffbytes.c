@@ -39,10 +39,12 @@ gboolean gst_dff_bytes_open(GstByteReader *reader, GBytes *bytes, guint8 kind, G
     return TRUE;
 }
 
-gboolean gst_dff_bytes_close(gboolean complete, GBytes *bytes, GError **error)
+gboolean gst_dff_bytes_close(const GstByteReader *reader, gboolean complete, GError **error)
 {
-    if (!complete)
+    const gboolean whole = complete && gst_byte_reader_get_remaining(reader) == 0;
+
+    if (!whole)
         g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
-                    "The meta is cut short or damaged (%" G_GSIZE_FORMAT " bytes)", g_bytes_get_size(bytes));
-    return complete;
+                    "The meta is cut short or damaged (%u bytes)", gst_byte_reader_get_size(reader));
+    return whole;
 }

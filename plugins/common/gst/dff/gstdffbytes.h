@@ -9,12 +9,12 @@
 G_BEGIN_DECLS
 
 /* The bytes of a meta: a letter for its kind, a version, then its fields, big endian. A reader refuses what
- * it does not know; a later version may only append fields. */
+ * it does not know: versions other than its own, and bytes behind the last field. */
 #define GST_DFF_BYTES_VERSION 1
 
 void gst_dff_bytes_begin(GstByteWriter *writer, guint8 kind);
 GBytes *gst_dff_bytes_end(GstByteWriter *writer);
 gboolean gst_dff_bytes_open(GstByteReader *reader, GBytes *bytes, guint8 kind, GError **error);
-gboolean gst_dff_bytes_close(gboolean complete, GBytes *bytes, GError **error);
+gboolean gst_dff_bytes_close(const GstByteReader *reader, gboolean complete, GError **error);
 
 G_END_DECLS

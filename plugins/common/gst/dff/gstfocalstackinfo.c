@@ -12,6 +12,9 @@
 
 #include "gstfocalstackmeta.h"
 
+G_DEFINE_BOXED_TYPE(GstFocalStackInfo, gst_focal_stack_info, gst_focal_stack_info_copy,
+                    gst_focal_stack_info_free)
+
 static GstCaps *as_raw_caps(const GstCaps *caps)
 {
     GstCaps *raw = gst_caps_copy(caps);
@@ -20,8 +23,61 @@ static GstCaps *as_raw_caps(const GstCaps *caps)
     return raw;
 }
 
+/* The formats of GST_FOCAL_STACK_FORMATS. */
+static gboolean is_stack_format(GstVideoFormat format)
+{
+    switch (format) {
+    case GST_VIDEO_FORMAT_GRAY8:
+    case GST_VIDEO_FORMAT_GRAY16_LE:
+    case GST_VIDEO_FORMAT_I420:
+    case GST_VIDEO_FORMAT_NV12:
+    case GST_VIDEO_FORMAT_RGB:
+    case GST_VIDEO_FORMAT_BGR:
+    case GST_VIDEO_FORMAT_RGBx:
+    case GST_VIDEO_FORMAT_BGRx:
+        return TRUE;
+    default:
+        return FALSE;
+    }
+}
+
 /**
- * gst_focal_stack_info_from_caps:
+ * gst_focal_stack_info_copy: (skip)
+ * @info: a #GstFocalStackInfo
+ *
+ * Returns: (transfer full): a copy, to be freed with gst_focal_stack_info_free()
+ */
+GstFocalStackInfo *gst_focal_stack_info_copy(const GstFocalStackInfo *info)
+{
+    return g_memdup2(info, sizeof *info);
+}
+
+/**
+ * gst_focal_stack_info_free: (skip)
+ * @info: what gst_focal_stack_info_new_from_caps() or gst_focal_stack_info_copy() gave
+ */
+void gst_focal_stack_info_free(GstFocalStackInfo *info)
+{
+    g_free(info);
+}
+
+/**
+ * gst_focal_stack_info_new_from_caps: (constructor)
+ * @caps: fixed caps
+ *
+ * For languages that cannot put a #GstVideoInfo on their stack.
+ *
+ * Returns: (transfer full) (nullable): the parsed caps, or %NULL if @caps are not those of a focal stack
+ */
+GstFocalStackInfo *gst_focal_stack_info_new_from_caps(const GstCaps *caps)
+{
+    GstFocalStackInfo info;
+
+    return gst_focal_stack_info_from_caps(&info, caps) ? gst_focal_stack_info_copy(&info) : NULL;
+}
+
+/**
+ * gst_focal_stack_info_from_caps: (skip)
  * @info: (out caller-allocates): the parsed caps
  * @caps: fixed caps
  *
@@ -40,7 +96,8 @@ gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *
         planes > GST_FOCAL_STACK_MAX_PLANES)
         return FALSE;
     info->planes = (guint)planes;
-    return gst_video_info_from_caps(&info->frame, raw);
+    return gst_video_info_from_caps(&info->frame, raw) &&
+           is_stack_format(GST_VIDEO_INFO_FORMAT(&info->frame));
 }
 
 /**

@@ -24,16 +24,22 @@ typedef struct _GstFocalStackInfo GstFocalStackInfo;
 
 /**
  * GstFocalStackInfo:
- * @frame: format, size, colorimetry of one plane, and its default layout; its frame rate is stacks per second
  * @planes: planes a stack, 2 to 64
+ * @frame: format, size, colorimetry of one plane, and its default layout; its frame rate is stacks per second
  *
  * The caps of a focal stack, parsed.
  */
 struct _GstFocalStackInfo {
-    GstVideoInfo frame;
     guint planes;
+    GstVideoInfo frame;
 };
 
+#define GST_TYPE_FOCAL_STACK_INFO (gst_focal_stack_info_get_type())
+GST_DFF_API GType gst_focal_stack_info_get_type(void);
+
+GST_DFF_API GstFocalStackInfo *gst_focal_stack_info_new_from_caps(const GstCaps *caps);
+GST_DFF_API GstFocalStackInfo *gst_focal_stack_info_copy(const GstFocalStackInfo *info);
+GST_DFF_API void gst_focal_stack_info_free(GstFocalStackInfo *info);
 GST_DFF_API gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *caps);
 GST_DFF_API GstCaps *gst_focal_stack_info_to_caps(const GstFocalStackInfo *info);
 GST_DFF_API gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info);
@@ -41,5 +47,7 @@ GST_DFF_API gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *
                                                        guint plane, gsize offset[GST_VIDEO_MAX_PLANES],
                                                        gint stride[GST_VIDEO_MAX_PLANES], GError **error);
 GST_DFF_API void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuffer *buffer);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(GstFocalStackInfo, gst_focal_stack_info_free)
 
 G_END_DECLS

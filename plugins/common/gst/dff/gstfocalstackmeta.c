@@ -174,6 +174,12 @@ static gboolean read_planes(GstFocusInfo *focus, guint planes, GstByteReader *re
     return TRUE;
 }
 
+/* Whether a bit mask speaks of the stack's planes only. */
+static gboolean names_planes(guint64 mask, guint planes)
+{
+    return planes == GST_FOCAL_STACK_MAX_PLANES || mask >> planes == 0;
+}
+
 /**
  * gst_buffer_add_focal_stack_meta_from_bytes:
  * @buffer: a writable #GstBuffer
@@ -196,8 +202,9 @@ GstFocalStackMeta *gst_buffer_add_focal_stack_meta_from_bytes(GstBuffer *buffer,
         gst_byte_reader_get_uint64_be(&reader, &sequence) && gst_byte_reader_get_uint8(&reader, &planes) &&
         gst_byte_reader_get_uint8(&reader, &complete) && gst_byte_reader_get_uint64_be(&reader, &missing) &&
         gst_byte_reader_get_uint64_be(&reader, &repeated) && planes >= 2 &&
-        planes <= GST_FOCAL_STACK_MAX_PLANES && read_planes(focus, planes, &reader);
-    if (!gst_dff_bytes_close(whole, bytes, error))
+        planes <= GST_FOCAL_STACK_MAX_PLANES && names_planes(missing | repeated, planes) &&
+        read_planes(focus, planes, &reader);
+    if (!gst_dff_bytes_close(&reader, whole, error))
         return NULL;
 
     GstFocalStackMeta *self = gst_buffer_add_focal_stack_meta(buffer, sequence, planes);

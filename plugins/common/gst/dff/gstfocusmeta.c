@@ -72,7 +72,7 @@ const GstMetaInfo *gst_focus_meta_get_info(void)
 
 /**
  * gst_focus_info_init:
- * @info: (out caller-allocates): a #GstFocusInfo
+ * @info: a #GstFocusInfo
  *
  * Sets every field to "unknown".
  */
@@ -185,7 +185,7 @@ GstFocusMeta *gst_buffer_add_focus_meta_from_bytes(GstBuffer *buffer, GBytes *by
     gst_focus_info_init(&info);
     if (!gst_dff_bytes_open(&reader, bytes, KIND, error))
         return NULL;
-    if (!gst_dff_bytes_close(gst_focus_info_read(&info, &reader), bytes, error))
+    if (!gst_dff_bytes_close(&reader, gst_focus_info_read(&info, &reader), error))
         return NULL;
     return gst_buffer_add_focus_meta(buffer, &info);
 }
