@@ -30,12 +30,13 @@ inline float8 affinity(__global const float *edges, size_t cell)
     return square * square * e;
 }
 
-/* Solves the columns of both pictures of the pair in place (Thomas's algorithm). Work-items (1, blocks of 8 columns);
- * scratch: a picture. */
-__kernel void smooth_columns(__global float *pair, __global const float *edges, __global float *scratch, float lambda,
+/* Solves the columns of both pictures of the pair in place (Thomas's algorithm). `direction` of the edges is along the
+ * columns. Work-items (1, blocks of 8 columns); scratch: a picture. */
+__kernel void smooth_columns(__global float *pair, __global const float *edges, int direction, __global float *scratch, float lambda,
                              int height, int stride)
 {
     const size_t picture = (size_t)height * stride, first = SIDE + 8 * get_global_id(1);
+    edges += direction * picture;
     float8 above = 0.0f, kept = 0.0f, u = 0.0f, weight = 0.0f;
     for (int y = 0; y < height; y++) {
         const size_t cell = first + (size_t)y * stride;

@@ -87,7 +87,7 @@ __kernel void blend_planes(__global const float *small, __global const float *u,
         float8 weights = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f;
         for (int z = 0; z < planes; z++) {
             const float8 distance = z - position;
-            const float8 weight = native_exp(steepness * distance * distance);
+            const float8 weight = quick_exp(steepness * distance * distance);
             __global const float *cells = small + 3 * z * picture + row + x;
             weights += weight;
             red += weight * READ_CELLS(cells);
@@ -121,7 +121,7 @@ __kernel void denoise(__global const float *guide, __global const Noise *noise, 
                 const float8 r = READ_CELLS(cells), g = READ_CELLS(cells + picture),
                              b = READ_CELLS(cells + 2 * picture);
                 const float8 e = fabs(r - red) + fabs(g - green) + fabs(b - blue);
-                const float8 weight = native_exp(steepness * e * e - (i * i + j * j) / 8.0f);
+                const float8 weight = quick_exp(steepness * e * e - (i * i + j * j) / 8.0f);
                 weights += weight;
                 red_sum += weight * r;
                 green_sum += weight * g;

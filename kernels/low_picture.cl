@@ -14,6 +14,15 @@ typedef float8 float8_anywhere __attribute__((aligned(4)));
 #define CELLS(pointer) (*(__global float8_anywhere *)(pointer))
 #define READ_CELLS(pointer) (*(__global const float8_anywhere *)(pointer))
 
+/* exp(x), x <= 0, to 0.2 %: 2^f as a parabola on the fraction f of x log2 e; the library's is slower. 0 below -80. */
+inline float8 quick_exp(float8 x)
+{
+    const float8 power = max(x, -80.0f) * 1.44269504f;
+    const float8 whole = floor(power), fraction = power - whole;
+    const float8 mantissa = 1.00172476f + fraction * (0.65763628f + fraction * 0.33718944f);
+    return as_float8(as_int8(mantissa) + (convert_int8(whole) << 23));
+}
+
 /* Index i of n cells mirrored at the ends, the end cells repeated: -1 is 0, n is n - 1. */
 inline int reflect(int i, int n)
 {

@@ -8,6 +8,40 @@
 typedef uchar16 uchar16_anywhere __attribute__((aligned(1)));
 typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 
+#define store16(v, pointer) *(__global float16_anywhere *)(pointer) = v
+typedef float16 float16_anywhere __attribute__((aligned(4)));
+
+/* Sums of BOX rows for 16 * count samples. */
+inline void sum_rows(__global const uchar *top, ulong stride, ushort16 *sums, int count)
+{
+    for (int i = 0; i < count; i++) {
+        sums[i] = 0;
+        for (int j = 0; j < BOX; j++)
+            sums[i] += convert_ushort16(*(__global const uchar16_anywhere *)(top + stride * (ulong)j + 16 * i));
+    }
+}
+
+inline ushort16 add_pairs(ushort16 a, ushort16 b)
+{
+    return (ushort16)(a.even + a.odd, b.even + b.odd);
+}
+
+/* Sums of each BOX of 16 * BOX neighbours. */
+inline ushort16 sum_along(ushort16 *sums)
+{
+    for (int count = BOX; count > 1; count /= 2)
+        for (int i = 0; i < count / 2; i++)
+            sums[i] = add_pairs(sums[2 * i], sums[2 * i + 1]);
+    return sums[0];
+}
+
+inline ushort16 sum_block(__global const uchar *top, ulong stride)
+{
+    ushort16 sums[BOX];
+    sum_rows(top, stride, sums, BOX);
+    return sum_along(sums);
+}
+
 /* Averages squares of BOX samples of a component with CHANNELS interleaved channels, `bytes` each pixel of it.
  * `places` says which colour a channel is, -1 none. Work-items (1, low height, planes). */
 __kernel void average_squares(__global const uchar *stack, __global const ulong2 *table, int first_row,
@@ -21,8 +55,25 @@ __kernel void average_squares(__global const uchar *stack, __global const ulong2
     const int place[4] = {places.s0, places.s1, places.s2, places.s3};
 
 #if SAMPLE_BYTES == 1
+    int done = 0;
+#if CHANNELS == 1
+    for (; done + 16 <= low_width; done += 16)
+        store16(convert_float16(sum_block(top + done * BOX, rows.y)) * (1.0f / (BOX * BOX)),
+                out + place[0] * colour + done);
+#elif CHANNELS == 2
+    for (; done + 16 <= low_width; done += 16) {
+        ushort16 sums[2 * BOX], first[BOX], second[BOX];
+        sum_rows(top + 2 * done * BOX, rows.y, sums, 2 * BOX);
+        for (int i = 0; i < BOX; i++) {
+            first[i] = (ushort16)(sums[2 * i].even, sums[2 * i + 1].even);
+            second[i] = (ushort16)(sums[2 * i].odd, sums[2 * i + 1].odd);
+        }
+        store16(convert_float16(sum_along(first)) * (1.0f / (BOX * BOX)), out + place[0] * colour + done);
+        store16(convert_float16(sum_along(second)) * (1.0f / (BOX * BOX)), out + place[1] * colour + done);
+    }
+#endif
     ushort sums[16 * CHANNELS];
-    for (int x = 0; x < low_width; x += 16 / BOX) {
+    for (int x = done; x < low_width; x += 16 / BOX) {
         const int from = min(x * BOX, width - 16), skipped = x * BOX - from;
         for (int part = 0; part < CHANNELS; part++) {
             ushort16 sum = 0;

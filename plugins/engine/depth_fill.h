@@ -19,12 +19,13 @@ public:
     const cl::Buffer &high_confidence() const { return high_confidence_; }
 
 private:
-    void smooth(const cl::Buffer &pair, const LowShape &low, const cl::Buffer &edges, cl_float lambda);
+    void smooth(const cl::Buffer &pair, const LowShape &low, const cl::Buffer &edges, cl_int direction,
+                cl_float lambda);
 
     CommandQueue &queue_;
     LowShape low_, transposed_;
     cl::Kernel weigh_, smooth_columns_, fill_, quantile_;
-    cl::Buffer pair_, pair_transposed_, scratch_, high_confidence_;
+    cl::Buffer pair_, pair_transposed_, edges_transposed_, scratch_, high_confidence_;
 };
 
 } // namespace dff

@@ -23,9 +23,11 @@ unsigned choose_scale(const StackShape &shape, unsigned wish)
     return uint64_t{shape.width} * shape.height < pixels_for_scale_4 ? 2 : 4;
 }
 
+/* Whole cache lines, and an odd number of them, so that cells above each other share no cache set. */
 cl_int stride_for(cl_int width)
 {
-    return (width + 7) / 8 * 8 + 2 * LowShape::side;
+    const cl_int lines = (width + 2 * LowShape::side + 15) / 16;
+    return (lines | 1) * 16;
 }
 
 } // namespace
