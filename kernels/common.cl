@@ -28,3 +28,14 @@ inline int mirror(int i, int n)
     i = abs(i);
     return i < n ? i : 2 * n - 2 - i;
 }
+
+/* For the kernels in cpu/: 16 lanes that may lie anywhere in memory. */
+typedef uchar16 __attribute__((aligned(1))) lanes8;
+typedef ushort16 __attribute__((aligned(2))) lanes16;
+typedef short16 __attribute__((aligned(2))) slanes16;
+typedef int16 __attribute__((aligned(4))) ilanes;
+typedef float16 __attribute__((aligned(4))) flanes;
+#define LANE ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+
+/* Runs over a row of 16 pixels or more; the last lanes overlap the ones before, so that nothing outside is touched. */
+#define FOR_EACH_16(x, width) for (int x = 0; x < (width); x = x + 16 < (width) ? min(x + 16, (width) - 16) : (width))

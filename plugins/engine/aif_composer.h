@@ -36,12 +36,27 @@ public:
     const StageTimes &times() const { return times_; }
 
 private:
+    /* The output and what is read of the depth map, on the device. */
+    struct Pictures {
+        cl::Buffer depth, output;
+        size_t depth_stride;
+    };
+
+    void write_positions(const DepthEncoder &encoder);
+    void write_fixed_positions(const DepthEncoder &encoder);
+    void compose_pixels(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
+    void compose_rows(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
+
     std::shared_ptr<Device> device_;
     StackShape shape_;
+    std::vector<Component> components_;
     CommandQueue queue_;
     StackBuffer stack_;
+    bool in_tiles_; /* 16 samples of 8 bits at once, on a CPU */
     cl::Kernel compose_;
     cl::Buffer positions_;
+    float position_scale_ =
+        0.0f; /* of aif_rows.cl: positions a depth pixel, 0 where they must be looked up */
     StageTimes times_;
 };
 

@@ -18,9 +18,12 @@ DepthCoder::DepthCoder(CommandQueue &queue, const StackShape &shape)
 void DepthCoder::set_encoder(const DepthEncoder &encoder)
 {
     std::vector<cl_ushort> codes(DepthScale::max_pixel + 1, DepthScale::no_value);
-    for (unsigned i = 1; i < codes.size(); i++)
+    is_linear_ = true;
+    for (unsigned i = 1; i < codes.size(); i++) {
         codes[i] =
             encoder.encode((shape_.planes - 1) * (i - 1) / static_cast<double>(DepthScale::max_pixel - 1));
+        is_linear_ = is_linear_ && codes[i] == i;
+    }
     queue_.commands().enqueueWriteBuffer(codes_, CL_TRUE, 0, codes.size() * sizeof(cl_ushort), codes.data());
 }
 

@@ -16,6 +16,12 @@ public:
     /* What the pixels mean from now on; DepthEncoder::index() until then. */
     void set_encoder(const DepthEncoder &encoder);
 
+    /* ushort[65536]: the pixel for each position, as depth_code.cl numbers them. */
+    const cl::Buffer &codes() const { return codes_; }
+
+    /* A position's pixel is its number, so that nobody needs to look it up. */
+    bool is_linear() const { return is_linear_; }
+
     /* ushort[height][width] from float positions, 0 from NAN. */
     void code_positions(const cl::Buffer &positions, const cl::Buffer &depth);
 
@@ -27,6 +33,7 @@ private:
     StackShape shape_;
     cl::Kernel code_positions_, code_planes_;
     cl::Buffer codes_;
+    bool is_linear_ = true;
 };
 
 } // namespace dff

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/focus_engine.h"
 
+#include "engine/cpu/cpu_paper_method.h"
 #include "engine/engine_error.h"
 #include "engine/paper_method.h"
 #include "engine/volume_method.h"
@@ -31,9 +32,11 @@ std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackSha
 std::unique_ptr<DepthMethod> make_method(CommandQueue &queue, const StackShape &shape,
                                          const DepthParameters &parameters)
 {
-    if (parameters.method == Method::Paper)
-        return std::make_unique<PaperMethod>(queue, shape, parameters);
-    return std::make_unique<VolumeMethod>(queue, shape, parameters);
+    if (parameters.method == Method::Volume)
+        return std::make_unique<VolumeMethod>(queue, shape, parameters);
+    if (queue.device().kernel_style() == KernelStyle::Tiles && parameters.grid.sigma_chroma == 0)
+        return std::make_unique<CpuPaperMethod>(queue, shape, parameters);
+    return std::make_unique<PaperMethod>(queue, shape, parameters);
 }
 
 } // namespace

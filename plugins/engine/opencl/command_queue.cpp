@@ -2,12 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/opencl/command_queue.h"
 
+#include <algorithm>
+
 namespace dff {
 
 namespace {
-
-/* Fixed, because every new work-group size is compiled anew by PoCL. */
-constexpr size_t group_width = 64;
 
 constexpr size_t round_up(size_t value, size_t multiple)
 {
@@ -21,22 +20,19 @@ CommandQueue::CommandQueue(std::shared_ptr<Device> device)
 {
 }
 
-void CommandQueue::enqueue(const cl::Kernel &kernel, const cl::NDRange &size)
+void CommandQueue::enqueue(const cl::Kernel &kernel, const cl::NDRange &size, std::array<size_t, 3> group)
 {
-    const size_t *items = size.get();
-    const size_t width = items[0] == 1 ? 1 : group_width;
-    cl::Event event;
+    std::array<size_t, 3> items{1, 1, 1};
+    std::copy_n(size.get(), size.dimensions(), items.begin());
+    if (items[0] == 1)
+        group[0] = 1;
+    items[0] = round_up(items[0], group[0]);
 
+    cl::Event event;
     if (stages_.empty())
         begin_stage("");
-    if (size.dimensions() == 1)
-        queue_.enqueueNDRangeKernel(kernel, {}, {round_up(items[0], width)}, {width}, nullptr, &event);
-    else if (size.dimensions() == 2)
-        queue_.enqueueNDRangeKernel(kernel, {}, {round_up(items[0], width), items[1]}, {width, 1}, nullptr,
-                                    &event);
-    else
-        queue_.enqueueNDRangeKernel(kernel, {}, {round_up(items[0], width), items[1], items[2]},
-                                    {width, 1, 1}, nullptr, &event);
+    queue_.enqueueNDRangeKernel(kernel, {}, {items[0], items[1], items[2]}, {group[0], group[1], group[2]},
+                                nullptr, &event);
     stages_.back().second.push_back(event);
 }
 

@@ -4,7 +4,7 @@
 
 #include "engine/opencl/device.h"
 
-#include <map>
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,14 +35,27 @@ public:
     {
         cl_uint index = 0;
         (kernel.setArg(index++, arguments), ...);
-        enqueue(kernel, size);
+        enqueue(kernel, size, {group_width, 1, 1});
+    }
+
+    /* Runs `kernel` once for each of `size`, in work-groups of one: for kernels that work on a tile or a row.
+     */
+    template <typename... Arguments>
+    void run_groups(cl::Kernel &kernel, const cl::NDRange &size, const Arguments &...arguments)
+    {
+        cl_uint index = 0;
+        (kernel.setArg(index++, arguments), ...);
+        enqueue(kernel, size, {1, 1, 1});
     }
 
     /* Waits for all kernels and returns the times of the stages since the last call. */
     StageTimes finish();
 
 private:
-    void enqueue(const cl::Kernel &kernel, const cl::NDRange &size);
+    /* Fixed, because every new work-group size is compiled anew by PoCL. */
+    static constexpr size_t group_width = 64;
+
+    void enqueue(const cl::Kernel &kernel, const cl::NDRange &size, std::array<size_t, 3> group);
 
     std::shared_ptr<Device> device_;
     cl::CommandQueue queue_;

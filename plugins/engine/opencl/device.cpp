@@ -64,9 +64,10 @@ cl::Device choose(const std::vector<cl::Device> &devices, const std::string &wis
 
 } // namespace
 
-Device::Device(cl::Device device)
+Device::Device(cl::Device device, std::optional<KernelStyle> style)
     : device_(std::move(device)), context_(device_),
       is_cpu_((device_.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0),
+      kernel_style_(style.value_or(is_cpu_ ? KernelStyle::Tiles : KernelStyle::Pixels)),
       global_memory_(device_.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()),
       largest_allocation_(device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
 {

@@ -6,9 +6,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace dff {
+
+/* The kernels that suit a device: one work-item a pixel, or one a tile or row with 16 lanes of integers. */
+enum class KernelStyle { Pixels, Tiles };
 
 /* An OpenCL device with its context, shared by all engines that use it. */
 class Device {
@@ -18,7 +22,8 @@ public:
      * (NoDevice) with the list of devices if there is none. */
     static std::shared_ptr<Device> open(const std::string &wish);
 
-    explicit Device(cl::Device device);
+    /* A device of one's own; CPUs get KernelStyle::Tiles unless told otherwise. */
+    explicit Device(cl::Device device, std::optional<KernelStyle> style = std::nullopt);
 
     const cl::Device &device() const { return device_; }
     const cl::Context &context() const { return context_; }
@@ -27,6 +32,8 @@ public:
     /* The device works in the host's memory, so that stacks can be used in place. */
     bool is_cpu() const { return is_cpu_; }
 
+    KernelStyle kernel_style() const { return kernel_style_; }
+
     size_t global_memory() const { return global_memory_; }
     size_t largest_allocation() const { return largest_allocation_; }
 
@@ -34,6 +41,7 @@ private:
     cl::Device device_;
     cl::Context context_;
     bool is_cpu_;
+    KernelStyle kernel_style_;
     size_t global_memory_;
     size_t largest_allocation_;
 };

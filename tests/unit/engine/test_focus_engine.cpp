@@ -32,11 +32,12 @@ struct Maps {
 
 } // namespace
 
-/* The whole method against the twins one after the other. */
+/* The whole method against the twins one after the other; test_cpu_kernels holds the CPU's kernels to them.
+ */
 TEST(FocusEngine, agrees_with_the_twins)
 {
     const TestStack stack({PixelFormat::Bgr, 161, 131, 10});
-    FocusEngine engine(Device::open(""), stack.shape, {});
+    FocusEngine engine(device_with(KernelStyle::Pixels), stack.shape, {});
     Maps maps(stack.shape);
     ASSERT_TRUE(engine.compute(stack.view(), maps.outputs));
 
@@ -86,13 +87,20 @@ TEST(FocusEngine, the_encoder_gives_the_unit)
 TEST(FocusEngine, every_stage_has_a_time)
 {
     const TestStack stack({PixelFormat::Gray8, 64, 64, 3});
-    FocusEngine engine(Device::open(""), stack.shape, {});
-    Maps maps(stack.shape);
-    engine.compute(stack.view(), maps.outputs);
-    for (const char *stage : {"luma", "focus-measure", "z-entropy", "sparse-depth", "reference", "splat",
-                              "solve", "slice", "blur", "code", "confidence"})
-        EXPECT_EQ(std::count_if(engine.times().begin(), engine.times().end(),
-                                [&](const auto &time) { return time.first == stage; }),
-                  1)
-            << stage;
+    const std::vector<std::string> of_pixels = {"luma",      "focus-measure", "z-entropy", "sparse-depth",
+                                                "reference", "splat",         "solve",     "slice",
+                                                "blur",      "code",          "confidence"};
+    const std::vector<std::string> of_tiles = {"luma",  "statistics", "focus-measure", "sparse-depth",
+                                               "splat", "solve",      "slice"};
+    for (const auto &[style, stages] :
+         {std::pair(KernelStyle::Pixels, of_pixels), std::pair(KernelStyle::Tiles, of_tiles)}) {
+        FocusEngine engine(device_with(style), stack.shape, {});
+        Maps maps(stack.shape);
+        engine.compute(stack.view(), maps.outputs);
+        for (const std::string &stage : stages)
+            EXPECT_EQ(std::count_if(engine.times().begin(), engine.times().end(),
+                                    [&](const auto &time) { return time.first == stage; }),
+                      1)
+                << stage;
+    }
 }

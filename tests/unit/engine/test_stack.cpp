@@ -33,6 +33,11 @@ TestStack::TestStack(const StackShape &shape, unsigned seed)
     }
 }
 
+std::shared_ptr<Device> device_with(KernelStyle style)
+{
+    return std::make_shared<Device>(Device::open("")->device(), style);
+}
+
 uint8_t TestStack::sample(size_t component, unsigned x, unsigned y, unsigned z) const
 {
     const RowLayout &rows = layout[component * shape.planes + z];

@@ -22,6 +22,9 @@ struct TestStack {
     std::vector<std::byte> memory;
 };
 
+/* The default device, whatever it is, with kernels of one style. */
+std::shared_ptr<Device> device_with(KernelStyle style);
+
 /* A float picture a plane: value(x, y, z). */
 struct Volume {
     Volume(unsigned width, unsigned height, unsigned planes)

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * The smoothness problem of bilateral_grid.cl in the dense 3-D grid (x, y, luma), for CPUs: 16 cells at once, one
+ * work-item a row of the grid.
+ *
+ * Cells are float[rows + 2][ROW]; a row is [columns + 2][COLUMN] and some padding, a column an empty cell and one for
+ * each step of luma. Border, padding and empty cells are 0 in every vector. COLUMN, ROW, COLUMNS and ROWS are built in.
+ *
+ * The unknowns are scaled by the diagonal of A, x = sqrt(D) y, so that one coefficient a cell holds the whole system:
+ *
+ *     D_i = lambda n_i sum_j n_j + w_i + EPSILON,  d = 1 / sqrt(D),  e = sqrt(lambda) n d,  j the neighbours of i
+ *     (A' x)_i = x_i - e_i sum_j e_j x_j = d_i (target_i + EPSILON t0)
+ *
+ * and the conjugate gradient needs no preconditioner: it takes the steps that Jacobi's would. Its two dot products a
+ * step are taken together (Chronopoulos and Gear 1989), which leaves two kernels a step.
+ */
+#define CENTRE_WEIGHT 10.0f
+#define EPSILON 1e-6f
+
+typedef __global float *Cells;
+typedef __global const float *ConstCells;
+
+inline float16 at(ConstCells v, int i)
+{
+    return *(__global const flanes *)(v + i);
+}
+
+inline void put(Cells v, int i, float16 value)
+{
+    *(__global flanes *)(v + i) = value;
+}
+
+inline float16 neighbours(ConstCells v, int i)
+{
+    return at(v, i - 1) + at(v, i + 1) + at(v, i - COLUMN) + at(v, i + COLUMN) + at(v, i - ROW) + at(v, i + ROW);
+}
+
+/* (A' x)_i */
+inline float16 system_at(ConstCells e, ConstCells x, int i)
+{
+    const float16 sum = at(e, i - 1) * at(x, i - 1) + at(e, i + 1) * at(x, i + 1) +
+                        at(e, i - COLUMN) * at(x, i - COLUMN) + at(e, i + COLUMN) * at(x, i + COLUMN) +
+                        at(e, i - ROW) * at(x, i - ROW) + at(e, i + ROW) * at(x, i + ROW);
+    return at(x, i) - at(e, i) * sum;
+}
+
+inline float sum_of_lanes(float16 v)
+{
+    const float8 a = v.lo + v.hi;
+    const float4 b = a.lo + a.hi;
+    const float2 c = b.lo + b.hi;
+    return c.lo + c.hi;
+}
+
+/* Sum over the grid of what each row gives. */
+inline float2 sum_of_rows(__global const float2 *row_sums)
+{
+    float2 sum = 0.0f;
+    for (int i = 0; i < ROWS; i++)
+        sum += row_sums[i];
+    return sum;
+}
+
+/* First cell of the work-item's row. */
+inline int first_cell(void)
+{
+    return ((int)get_group_id(0) + 1) * ROW;
+}
+
+/* Counts of a cell in one number: pixels, known pixels, sum of their planes. */
+#define KNOWN_SHIFT 20
+#define PLANES_SHIFT 40
+
+/* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
+ * row_sums: (target, weight) of the row. */
+__kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight, Cells target,
+                         Cells n, __global float2 *row_sums, int width, int height, int sigma_xy, int sigma_luma)
+{
+    const int row = (int)get_group_id(0), top = row * sigma_xy, bottom = min(top + sigma_xy, height);
+    uchar step_of[256];
+    for (int i = 0; i < 256; i++)
+        step_of[i] = (uchar)(i / sigma_luma);
+
+    float2 sums = 0.0f;
+    int cell = first_cell() + COLUMN;
+    for (int left = 0; left < width; left += sigma_xy, cell += COLUMN) {
+        const int right = min(left + sigma_xy, width);
+        ulong counts[2][COLUMN - 1]; /* of even and odd pixels, which may follow each other in one cell */
+        for (int i = 0; i < COLUMN - 1; i++)
+            counts[0][i] = counts[1][i] = 0;
+        for (int y = top; y < bottom; y++)
+            for (int x = left; x < right; x++) {
+                const ulong pixel = (ulong)y * width + x;
+                const ulong plane = sparse[pixel];
+                const ulong known = plane == UNKNOWN_PLANE ? 0 : (1UL << KNOWN_SHIFT) + (plane << PLANES_SHIFT);
+                counts[x & 1][step_of[luma[pixel]]] += 1 + known;
+            }
+        for (int i = 0; i < COLUMN - 1; i++) {
+            const ulong count = counts[0][i] + counts[1][i];
+            const float pixels = (float)(count & ((1UL << KNOWN_SHIFT) - 1));
+            const float known = (float)(count >> KNOWN_SHIFT & ((1UL << KNOWN_SHIFT) - 1));
+            const float planes = (float)(count >> PLANES_SHIFT);
+            mass[cell + 1 + i] = pixels;
+            weight[cell + 1 + i] = known;
+            target[cell + 1 + i] = planes;
+            n[cell + 1 + i] = pixels > 0.0f ? 1.0f : 0.0f;
+            sums += (float2)(planes, known);
+        }
+    }
+    row_sums[row] = sums;
+}
+
+/* One step of bistochastisation, n -> next. */
+__kernel void normalise_rows(ConstCells mass, ConstCells n, Cells next)
+{
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 m = at(mass, i), here = at(n, i);
+        const float16 blurred = CENTRE_WEIGHT * here + neighbours(n, i);
+        put(next, i, m > 0.0f ? sqrt(here * m / blurred) : 0.0f);
+    }
+}
+
+/* The system: coefficients e, scale d, right-hand side. row_norms: its squared norm in the row. */
+__kernel void scale_rows(ConstCells n, ConstCells weight, ConstCells target, __global const float2 *row_sums, Cells e,
+                         Cells d, Cells right, __global float *row_norms, float lambda)
+{
+    const float2 sums = sum_of_rows(row_sums);
+    const float mean_target = sums.x / sums.y;
+    float16 norm = 0.0f;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 here = at(n, i);
+        const int16 occupied = here > 0.0f;
+        const float16 scale = 1.0f / sqrt(lambda * here * neighbours(n, i) + at(weight, i) + EPSILON);
+        const float16 r = occupied ? (at(target, i) + EPSILON * mean_target) * scale : 0.0f;
+        put(e, i, sqrt(lambda) * here * scale);
+        put(d, i, occupied ? scale : 0.0f);
+        put(right, i, r);
+        norm += r * r;
+    }
+    row_norms[get_group_id(0)] = sum_of_lanes(norm);
+}
+
+/* A first guess: target and weight spread by recursive filters along luma and x (here) and y (spread_columns). */
+#define KEEP_XY 0.6f
+#define KEEP_LUMA 0.4f
+
+inline void spread_cells(ConstCells from, Cells to, int first)
+{
+    for (int i = first; i < first + ROW; i += 16)
+        put(to, i, at(from, i) + KEEP_LUMA * (at(from, i - 1) + at(from, i + 1)));
+    for (int column = 2; column <= COLUMNS; column++)
+        for (int i = first + column * COLUMN; i < first + (column + 1) * COLUMN; i++)
+            to[i] += KEEP_XY * to[i - COLUMN];
+    for (int column = COLUMNS - 1; column >= 1; column--)
+        for (int i = first + column * COLUMN; i < first + (column + 1) * COLUMN; i++)
+            to[i] += KEEP_XY * to[i + COLUMN];
+}
+
+__kernel void spread_rows(ConstCells target, ConstCells weight, Cells spread_target, Cells spread_weight)
+{
+    spread_cells(target, spread_target, first_cell());
+    spread_cells(weight, spread_weight, first_cell());
+}
+
+/* One work-item 16 cells of all rows. */
+__kernel void spread_columns(Cells spread_target, Cells spread_weight)
+{
+    const int first = (int)get_group_id(0) * 16;
+    for (int row = 2; row <= ROWS; row++) {
+        const int i = row * ROW + first;
+        put(spread_target, i, at(spread_target, i) + KEEP_XY * at(spread_target, i - ROW));
+        put(spread_weight, i, at(spread_weight, i) + KEEP_XY * at(spread_weight, i - ROW));
+    }
+    for (int row = ROWS - 1; row >= 1; row--) {
+        const int i = row * ROW + first;
+        put(spread_target, i, at(spread_target, i) + KEEP_XY * at(spread_target, i + ROW));
+        put(spread_weight, i, at(spread_weight, i) + KEEP_XY * at(spread_weight, i + ROW));
+    }
+}
+
+/* The two starts, scaled: the spread means, and the last stack's solution where its cells were occupied. */
+__kernel void start_rows(ConstCells spread_target, ConstCells spread_weight, __global const float2 *row_sums,
+                         ConstCells last, ConstCells d, Cells spread_start, Cells last_start)
+{
+    const float2 sums = sum_of_rows(row_sums);
+    const float mean_target = sums.x / sums.y;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 weight = at(spread_weight, i), scale = at(d, i), before = at(last, i);
+        const float16 mean = weight > 1e-12f ? at(spread_target, i) / weight : mean_target;
+        const int16 occupied = scale > 0.0f;
+        put(spread_start, i, occupied ? mean / scale : 0.0f);
+        put(last_start, i, occupied ? (before > 0.0f ? before : mean) / scale : 0.0f);
+    }
+}
+
+/* Residuals of both starts; row_norms: their squared norms in the row. */
+__kernel void start_residuals(ConstCells e, ConstCells right, ConstCells spread_start, ConstCells last_start,
+                              Cells spread_residual, Cells last_residual, __global float2 *row_norms)
+{
+    float16 spread_norm = 0.0f, last_norm = 0.0f;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 r = at(right, i) - system_at(e, spread_start, i);
+        const float16 s = at(right, i) - system_at(e, last_start, i);
+        put(spread_residual, i, r);
+        put(last_residual, i, s);
+        spread_norm += r * r;
+        last_norm += s * s;
+    }
+    row_norms[get_group_id(0)] = (float2)(sum_of_lanes(spread_norm), sum_of_lanes(last_norm));
+}
+
+/* Takes the better start into x and r, where the spread one stands; the other's vectors become the empty directions. */
+__kernel void choose_start(__global const float2 *row_norms, Cells x, Cells r, Cells direction, Cells product)
+{
+    const float2 norms = sum_of_rows(row_norms);
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        if (norms.y < norms.x) {
+            put(x, i, at(direction, i));
+            put(r, i, at(product, i));
+        }
+        put(direction, i, 0.0f);
+        put(product, i, 0.0f);
+    }
+}
+
+/* State of the conjugate gradient after each step; steps[0] before the first. */
+typedef struct {
+    float squared_residual;
+    float alpha;
+    int done; /* converged, or nothing to solve */
+} Step;
+
+/* w = A' r; row_dots: (r . r, w . r) in the row. */
+__kernel void residual_product(ConstCells e, ConstCells r, Cells w, __global float2 *row_dots, __global const Step *steps,
+                               int step)
+{
+    if (steps[step].done)
+        return;
+    float16 rr = 0.0f, wr = 0.0f;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 here = at(r, i), product = system_at(e, r, i);
+        put(w, i, product);
+        rr += here * here;
+        wr += product * here;
+    }
+    row_dots[get_group_id(0)] = (float2)(sum_of_lanes(rr), sum_of_lanes(wr));
+}
+
+/* One step: directions, solution and residual. Converged at a residual of `tolerance` times the right-hand side. */
+__kernel void advance_rows(__global const float2 *row_dots, __global const float *row_norms, __global Step *steps,
+                           int step, Cells r, ConstCells w, Cells direction, Cells product, Cells x, float tolerance)
+{
+    const Step before = steps[step];
+    Step now = before;
+    float norm = 0.0f;
+    for (int i = 0; i < ROWS; i++)
+        norm += row_norms[i];
+    if (!before.done) {
+        const float2 dots = sum_of_rows(row_dots);
+        const float beta = step ? dots.x / before.squared_residual : 0.0f;
+        const float curvature = dots.y - (step ? beta * dots.x / before.alpha : 0.0f);
+        now.squared_residual = dots.x;
+        now.alpha = dots.x / curvature;
+        now.done = !(dots.x > tolerance * tolerance * norm && curvature > 0.0f);
+        if (!now.done)
+            for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+                const float16 p = at(r, i) + beta * at(direction, i), s = at(w, i) + beta * at(product, i);
+                put(direction, i, p);
+                put(product, i, s);
+                put(x, i, at(x, i) + now.alpha * p);
+                put(r, i, at(r, i) - now.alpha * s);
+            }
+    }
+    if (get_group_id(0) == 0)
+        steps[step + 1] = now;
+}
+
+/* solution = d x: plane positions; NAN where nothing is known at all. */
+__kernel void finish_rows(ConstCells x, ConstCells d, __global const float2 *row_sums, Cells solution)
+{
+    const float16 known = sum_of_rows(row_sums).y > 0.0f ? 0.0f : NAN;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16)
+        put(solution, i, known + at(d, i) * at(x, i));
+}

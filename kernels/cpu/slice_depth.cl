@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * For CPUs, tile by tile: the slice of bilateral_grid.cl, the Gaussian of gaussian_blur.cl and the coding of
+ * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and the grid's COLUMN and ROW of luma_grid.cl, are
+ * built in.
+ */
+#define TILE_WIDTH 256 /* multiple of 16 */
+#define TILE_HEIGHT 64
+#define STRIDE (TILE_WIDTH + 2 * RADIUS + 16)
+
+inline float16 symmetric_tap(const float *centre, int distance)
+{
+    return *(const flanes *)(centre - distance) + *(const flanes *)(centre + distance);
+}
+
+/* One work-item a tile: depth[height][stride]. taps: from the Gaussian's centre outwards. With `linear` a position's
+ * code is its number among the 65535 of depth_code.cl, and `codes` is not read. */
+__kernel void slice_depth(__global const float *solution, __global const uchar *luma, __constant float *taps,
+                          __global const ushort *codes, __global ushort *depth, int width, int height, int stride,
+                          int sigma_xy, int sigma_luma, int planes, int linear)
+{
+    float u[(TILE_HEIGHT + 2 * RADIUS) * STRIDE];
+    float row[STRIDE];
+    uchar step_of[256];
+    const int left = (int)get_group_id(0) * TILE_WIDTH, right = min(left + TILE_WIDTH, width);
+    const int top = (int)get_group_id(1) * TILE_HEIGHT, bottom = min(top + TILE_HEIGHT, height);
+
+    for (int i = 0; i < 256; i++)
+        step_of[i] = (uchar)(i / sigma_luma);
+
+    for (int y = top - RADIUS; y < bottom + RADIUS; y++) {
+        const int picture_y = mirror(y, height);
+        __global const uchar *luma_row = luma + (ulong)picture_y * width;
+        __global const float *cells = solution + (picture_y / sigma_xy + 1) * ROW + COLUMN + 1;
+        float *out = u + (y - top + RADIUS) * STRIDE + RADIUS - left;
+        const int from = max(left - RADIUS, 0), to = min(right + RADIUS, width);
+        for (int x = from; x < to;) {
+            __global const float *column = cells + x / sigma_xy * COLUMN;
+            const int end = min((x / sigma_xy + 1) * sigma_xy, to);
+#pragma clang loop vectorize(disable) unroll_count(4)
+            for (; x < end; x++)
+                out[x] = column[step_of[luma_row[x]]];
+        }
+        for (int x = left - RADIUS; x < from; x++)
+            out[x] = out[-x];
+        for (int x = to; x < right + RADIUS; x++)
+            out[x] = out[2 * width - 2 - x];
+    }
+
+    const float top_code = 65534.0f / (planes - 1);
+    for (int y = top; y < bottom; y++) {
+        for (int x = 0; x < right - left + 2 * RADIUS; x += 16) {
+            const float *centre = u + (y - top + RADIUS) * STRIDE + x;
+            float16 sum = taps[0] * *(const flanes *)centre;
+            for (int i = 1; i <= RADIUS; i++)
+                sum += taps[i] * symmetric_tap(centre, i * STRIDE);
+            *(flanes *)(row + x) = sum;
+        }
+        for (int x = 0; x < right - left; x += 16) {
+            const float *centre = row + RADIUS + x;
+            float16 sum = taps[0] * *(const flanes *)centre;
+            for (int i = 1; i <= RADIUS; i++)
+                sum += taps[i] * symmetric_tap(centre, i);
+            const float16 code = clamp(sum * top_code, 0.0f, 65534.0f) + 1.5f;
+            ushort lanes[16];
+            *(lanes16 *)lanes = convert_ushort16(isnan(sum) ? (float16)0.0f : code);
+            __global ushort *out = depth + (ulong)y * stride + left + x;
+            const int inside = min(right - left - x, 16);
+            if (!linear)
+                for (int i = 0; i < inside; i++)
+                    lanes[i] = codes[lanes[i]];
+            if (inside == 16)
+                *(__global lanes16 *)out = *(lanes16 *)lanes;
+            else
+                for (int i = 0; i < inside; i++)
+                    out[i] = lanes[i];
+        }
+    }
+}
