@@ -22,7 +22,7 @@ void expect_two_halves(const StackShape &shape)
                 const bool sharp = x < shape.width / 2 ? z == 0 : z == shape.planes - 1;
                 const RowLayout &rows = stack.layout[z];
                 stack.memory[rows.offset + rows.stride * y + x] =
-                    std::byte(sharp ? (x / 3 + y / 3) % 2 * 200 + 20 : 120);
+                    std::byte(sharp ? (x / 5 + y / 5) % 2 * 200 + 20 : 120);
             }
     FocusEngine engine(Device::open(""), shape, {});
     std::vector<uint16_t> depth(size_t{shape.width} * shape.height);

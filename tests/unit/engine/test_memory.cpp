@@ -55,7 +55,9 @@ TEST_P(MemoryFormats, nothing_outside_of_the_pictures_is_touched)
         const GuardedMemory depth(67 * 65 * sizeof(uint16_t), flush);
         DepthOutputs outputs;
         outputs.depth = {depth.bytes().data(), 67 * sizeof(uint16_t)};
-        FocusEngine engine(Device::open(""), shape, {});
+        DepthParameters parameters;
+        parameters.method = Method::Paper;
+        FocusEngine engine(Device::open(""), shape, parameters);
         engine.compute(view, outputs);
 
         const GuardedMemory picture(stack.memory.size() / 3, flush);
