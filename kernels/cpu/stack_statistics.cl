@@ -5,9 +5,23 @@
  * the moved pixels of z_entropy.cl. H is at most log2 of the bins between the darkest and the brightest plane, so that
  * the histogram is needed where these lie far apart only.
  */
-#define BIN_SHIFT 5 /* 32 DN */
-#define BINS 8
+#define BIN_SHIFT 4 /* 16 DN */
+#define BINS 16
+#define MOST_PLANES 64
 #define ROUNDING 1e-4f /* bits by which n_log2() may err */
+
+inline int lowest(uchar16 v)
+{
+    const uchar8 a = min(v.lo, v.hi);
+    const uchar4 b = min(a.lo, a.hi);
+    const uchar2 c = min(b.lo, b.hi);
+    return min(c.lo, c.hi);
+}
+
+inline int highest(uchar16 v)
+{
+    return 255 - lowest(~v);
+}
 
 /* n log2 n of whole numbers 1..64, to 2e-4: exponent plus a polynomial of the mantissa m in [1, 2). (log2() takes the
  * lanes one by one.) */
@@ -20,23 +34,16 @@ inline float16 n_log2(float16 n)
     return n * (convert_float16((bits >> 23) - 127) + log_m);
 }
 
-/* Entropy of the histogram of 16 pixels along z, bits. */
-inline float16 entropy(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes)
+/* Entropy along z of 16 pixels whose planes fall in the bins from `first` to `last`, bits. */
+inline float16 entropy(const uchar16 *bins, int planes, int first, int last)
 {
-    char16 count[BINS];
-    __attribute__((opencl_unroll_hint))
-    for (int bin = 0; bin < BINS; bin++)
-        count[bin] = 0;
-    for (int z = 0; z < planes; z++) {
-        const uchar16 of_bin = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x) >> (uchar)BIN_SHIFT;
-        __attribute__((opencl_unroll_hint))
-        for (int bin = 0; bin < BINS; bin++)
-            count[bin] -= of_bin == (uchar16)(uchar)bin;
-    }
     float16 sum = 0.0f;
-    __attribute__((opencl_unroll_hint))
-    for (int bin = 0; bin < BINS; bin++)
-        sum += n_log2(max(convert_float16(count[bin]), 1.0f));
+    for (int bin = first; bin <= last; bin++) {
+        char16 count = 0;
+        for (int z = 0; z < planes; z++)
+            count -= bins[z] == (uchar16)(uchar)bin;
+        sum += n_log2(max(convert_float16(count), 1.0f));
+    }
     return log2((float)planes) - sum / planes;
 }
 
@@ -59,10 +66,15 @@ __kernel void stack_statistics(__global const uchar *stack, __global const ulong
         const ulong pixel = (ulong)y * width + x;
         *(__global lanes8 *)(mean + pixel) = convert_uchar16(convert_float16(sum) * (1.0f / planes) + 1e-3f);
 
-        const uchar16 bins = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT) + (uchar)1;
+        const uchar16 first = darkest >> (uchar)BIN_SHIFT, last = brightest >> (uchar)BIN_SHIFT;
         uchar16 exceeds = 0;
-        if (any(bins > most_bins))
-            exceeds = as_uchar16(convert_char16(entropy(stack, rows, x, y, planes) > threshold_bits + ROUNDING));
+        if (any(last - first >= most_bins)) {
+            uchar16 bins[MOST_PLANES];
+            for (int z = 0; z < planes; z++)
+                bins[z] = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x) >> (uchar)BIN_SHIFT;
+            exceeds = as_uchar16(convert_char16(entropy(bins, planes, lowest(first), highest(last)) >
+                                                threshold_bits + ROUNDING));
+        }
         *(__global lanes8 *)(moved + pixel) = exceeds;
     }
 }
