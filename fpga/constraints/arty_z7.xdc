@@ -30,7 +30,3 @@ set_property -dict {PACKAGE_PIN P14 IOSTANDARD LVCMOS33} [get_ports error]
 set_property ASYNC_REG true [get_cells -hierarchical -filter {NAME =~ *synchronize_*/metastable_reg || NAME =~ *synchronize_*/stable_reg}]
 set_false_path -from [get_ports {reset_button run host_scl host_sda lens_scl lens_sda}]
 set_false_path -to [get_ports {trigger sync busy error host_sda lens_scl lens_sda}]
-
-# Banks 34 and 35 run at 3.3 V
-set_property CFGBVS VCCO [current_design]
-set_property CONFIG_VOLTAGE 3.3 [current_design]

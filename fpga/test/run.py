@@ -5,12 +5,14 @@
 
 --only NAME        only benches and checks whose name contains NAME
 --all-mutations    break every line listed in mutations.toml, not one for each entity
+--update-drawings  write the timing diagrams of doc/ anew
 """
 
 import argparse
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tomllib
@@ -30,8 +32,8 @@ FAST = {"CLOCK_HZ": 8_000_000}
 REAL = {"CLOCK_HZ": 125_000_000}
 SCALED = {"CLOCK_HZ": 8_000_000, "SCALE": 2}
 STANDARD = "--std=08"
-# A bench that takes longer hangs
-LIMIT_S = 240
+# A bench or check that takes longer hangs
+LIMIT_S = 300
 
 
 class Bench:
@@ -63,6 +65,12 @@ BENCHES = [
 ]
 
 
+# The timing diagrams of doc/
+DRAWINGS = [Bench("scenes", bench.toplevel, bench.generics, f"drawing_{bench.name}", TESTS=bench.name)
+            for bench in BENCHES[:7]] + [Bench("scenes", "lens_sweep_bench", FAST, "drawing_lens_sweep_top",
+                                               TESTS="lens_sweep_top")]
+
+
 def sources(rtl):
     """Files of sources.txt, in order, then the harness."""
     lines = (FPGA / "sources.txt").read_text(encoding="utf-8").splitlines()
@@ -88,13 +96,17 @@ def simulate(runner, bench, rtl, folder, log, tests=None):
                    "BENCH_CASES": str(BUILD), **bench.environment}
     tests = tests or bench.environment.get("BENCH_TESTS")
     finished = True
+    signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(LIMIT_S)
     try:
         runner.test(hdl_toplevel=bench.toplevel, test_module=bench.module, test_args=[STANDARD],
                     elab_args=[], plusargs=["--ieee-asserts=disable-at-0"], parameters=bench.generics,
                     build_dir=folder, test_dir=folder, extra_env=environment, results_xml=str(results), log_file=log,
                     testcase=tests, seed=1, timescale=None)
-    except (RuntimeError, SystemExit):
+    except (RuntimeError, SystemExit, TimeoutError):
         finished = False
+    finally:
+        signal.alarm(0)
     if not results.exists():
         return {"simulation": False}
     verdict = {}
@@ -104,6 +116,10 @@ def simulate(runner, bench, rtl, folder, log, tests=None):
     if not finished and all(verdict.values()):
         verdict["simulation"] = False
     return verdict
+
+
+def give_up(*_):
+    raise TimeoutError
 
 
 class Report:
@@ -212,6 +228,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="")
     parser.add_argument("--all-mutations", action="store_true")
+    parser.add_argument("--update-drawings", action="store_true")
     options = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     COVERAGE.unlink(missing_ok=True)
@@ -224,7 +241,9 @@ def main():
     if options.only in "style":
         run_command(report, "vsg", ["vsg", "-c", str(FPGA / "vsg.yaml"), "-of", "syntastic", "-f",
                                     *(str(file) for file in sources(RTL))])
-    benches = [bench for bench in BENCHES if options.only in bench.name and (TEST / f"{bench.module}.py").exists()]
+    if options.update_drawings:
+        os.environ["BENCH_UPDATE"] = "1"
+    benches = [bench for bench in BENCHES + DRAWINGS if options.only in bench.name]
     if benches:
         runner = build(RTL, BUILD / "design", BUILD / "build.log")
         for bench in benches:
