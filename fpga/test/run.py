@@ -11,6 +11,7 @@
 import argparse
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -173,6 +174,17 @@ def check_synthesis(report):
     print("resources: " + ", ".join(f"{number} {what}" for what, number in netlist.estimate(dump).items()))
 
 
+def check_pages(report):
+    """Every generic and port of an entity stands on its page."""
+    for file in sources(RTL)[:-1]:
+        declaration = re.search(r"entity (\w+) is(.*?)end entity", file.read_text(encoding="utf-8"), re.DOTALL)
+        if declaration:
+            page = (FPGA / "doc" / f"{file.stem}.md").read_text(encoding="utf-8")
+            names = re.findall(r"^\s*(\w+)\s*: ", declaration.group(2), re.MULTILINE)
+            missing = [name for name in names if f"`{name}`" not in page]
+            report.add(f"page of {file.stem} is whole " + " ".join(missing), bool(names) and not missing)
+
+
 def check_mutations(report, every):
     """Breaks a line of an entity and sees its bench fail."""
     listed = tomllib.loads((TEST / "mutations.toml").read_text(encoding="utf-8"))["mutation"]
@@ -236,6 +248,8 @@ def main():
 
     if options.only in "registers":
         run_command(report, "generated files are current", [sys.executable, str(FPGA / "generate.py"), "--check"])
+    if options.only in "pages":
+        check_pages(report)
     if options.only in "synthesis":
         check_synthesis(report)
     if options.only in "style":
