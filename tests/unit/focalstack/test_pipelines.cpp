@@ -259,7 +259,9 @@ TEST(Pipelines, ten_thousand_frames_take_no_more_memory_than_a_thousand)
         EXPECT_EQ(pipeline.wait_for_end(), "");
         std::printf("window=%s: resident after 1,000 frames %ld kB, after 10,000 frames %ld kB\n", window,
                     start, end);
+#ifndef __SANITIZE_ADDRESS__ /* which keeps what was freed for a while, and finds leaks itself */
         EXPECT_LT(end - start, 2048);
+#endif
     }
 }
 
