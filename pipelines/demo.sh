@@ -16,7 +16,7 @@ photos=${1:+$(realpath -- "$1")}
 cd "$(dirname "$0")/.."
 . pipelines/setup.sh
 
-planes=10 stacks=40 width=640 height=480 rate=25
+planes=10 stacks=30 width=640 height=480 rate=25
 # Warm is near: depth is smaller where it is nearer, so it is turned over before it is coloured. The colorimetry keeps it
 # off 0 and 255, where solarize would wrap around.
 colour_map="videoconvert ! video/x-raw,format=BGRx,colorimetry=2:1:5:1 !
@@ -30,7 +30,14 @@ fail() {
 # launch PIPELINE: runs it to its end; its messages are shown if it fails, and kept in demo/gst-launch.log.
 launch() {
     # shellcheck disable=SC2086  # gst-launch takes the pipeline word by word
-    GST_DEBUG_NO_COLOR=1 timeout 600 gst-launch-1.0 -f $1 >demo/gst-launch.log 2>&1 || {
+    timeout 600 gst-launch-1.0 -f $1 >demo/gst-launch.log 2>&1 &
+    local process=$!
+    # gst-launch-1.0 1.22 may wait for ever after an error that comes early.
+    while kill -0 $process 2>/dev/null; do
+        sleep 0.2
+        ! grep -q '^ERROR' demo/gst-launch.log || kill $process 2>/dev/null || true
+    done
+    wait $process || {
         cat demo/gst-launch.log
         fail "gst-launch-1.0 did not reach the end"
     }
