@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/stack_shape.h"
+
+namespace dff::bench {
+
+/* A stack I420 of a textured picture, vertical bands of it sharp in one plane after the other and blurred by
+ * 2 pixels more a plane elsewhere. */
+struct BenchStack {
+    BenchStack(uint32_t width, uint32_t height, uint32_t planes);
+
+    StackView view() const { return {shape, memory, layout}; }
+
+    StackShape shape;
+    std::vector<RowLayout> layout;
+    std::vector<std::byte> memory;
+    std::vector<uint8_t> luma; /* of all planes, one after the other */
+};
+
+} // namespace dff::bench

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+#
+# run.sh [--quick] [FOLDER]: times a stack from luma to all-in-focus picture, stage by stage, beside a memory copy and
+# other ways to the same end. Writes bench.md, bench.json and bench.svg to FOLDER (bench-results). Ratios hold on a busy
+# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds.
+set -euo pipefail
+quick=()
+if [ "${1:-}" = --quick ]; then
+    quick=(--quick)
+    shift
+fi
+folder=$(realpath -m "${1:-bench-results}")
+cd "$(dirname "$0")/../.."
+. pipelines/setup.sh
+install_missing "${run_packages[@]}" "${build_packages[@]}" "${test_packages[@]}"
+
+mkdir -p "$folder" build-release
+[ -f build-release/build.ninja ] || meson setup build-release --buildtype=release
+ninja -C build-release tests/bench/dff-bench
+
+say "Measuring"
+enter build-release
+build-release/tests/bench/dff-bench "$folder/bench.md" "$folder/bench.json" "${quick[@]}"
+cat "$folder/bench.md"
+
+python=build-release/bench-python/bin/python
+[ -x $python ] || python3 -m venv build-release/bench-python
+if $python -c 'import matplotlib' 2>/dev/null || $python -m pip install -q matplotlib; then
+    $python tests/bench/plot.py "$folder/bench.json" "$folder/bench.svg"
+else
+    say "No plot: matplotlib is not to be had"
+fi
+say "Written: $folder"
