@@ -85,6 +85,9 @@ check "clang-format" bash -c "git ls-files 'plugins/*.cpp' 'plugins/*.c' 'plugin
 say "Checking the code with clang-tidy"
 check "clang-tidy" tidy
 
+say "Checking the evaluation: its scores, and the elements on a small scene"
+check "evaluation" env BUILD=build-release tests/eval/run.sh --self-check
+
 if [ -f fpga/test/run.sh ]; then
     say "Testing the FPGA design"
     fpga_output=$(bash fpga/test/run.sh 2>&1 | tee /dev/stderr)

@@ -25,20 +25,23 @@ COLUMNS = (('psnr', 'PSNR dB', '.2f'), ('mae', 'MAE', '.2f'), ('off_by_plane', '
 
 
 def run_elements(scene, method, noise, blur_step):
-    """Plane positions and the all-in-focus image (BGR) that the pipeline makes of a scene."""
+    """Plane positions and the all-in-focus image (BGR) that the pipeline makes of a scene.
+
+    method is a property as in a pipeline, method=paper, or empty: dffdepth's own choice.
+    """
     view = cv2.imread(str(scene / 'view.png'))
     with tempfile.TemporaryDirectory() as folder:
         depth, aif = pathlib.Path(folder, 'depth'), pathlib.Path(folder, 'aif')
         pipeline = f'''lenssweeptestsrc num-buffers={PLANES} planes={PLANES} scene=files image="{scene}/view.png"
             depth-map="{scene}/disp.png" blur-step={blur_step} noise={noise} seed=1 !
             video/x-raw,format=BGR,width={view.shape[1]},height={view.shape[0]} ! focalstackmux ! tee name=s
-            s. ! queue ! dffdepth method={method} unit=index ! tee name=d  d. ! queue ! filesink location={depth}
+            s. ! queue ! dffdepth {method} unit=index ! tee name=d  d. ! queue ! filesink location={depth}
             d. ! queue ! c.depth  s. ! queue ! c.stack
             aifcompose name=c ! videoconvert ! video/x-raw,format=BGR ! filesink location={aif}'''
         finished = subprocess.run(['gst-launch-1.0', '-q', *pipeline.split()], timeout=SECONDS_EACH, text=True,
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if finished.returncode != 0:
-            raise RuntimeError(f'{scene.name}, {method}, {noise}: the pipeline failed\n{finished.stdout}')
+            raise RuntimeError(f'{scene.name}, noise {noise}: the pipeline failed\n{finished.stdout}')
         pixels = read_rows(depth, view.shape[:2], np.dtype('<u2'), 1)[..., 0]
         image = read_rows(aif, view.shape[:2], np.dtype('u1'), 3)
     return np.maximum(pixels.astype(np.float64) - 1, 0) / 65534 * (PLANES - 1), image
@@ -75,7 +78,7 @@ def averages(rows):
 
 
 def print_table(method, noise, rows):
-    print(f'\nmethod={method}, noise={noise}, {PLANES} planes')
+    print(f'\n{method or "the method dffdepth chooses"}, noise={noise}, {PLANES} planes')
     print(f'{"":24}' + ''.join(f'{title:>10}' for _, title, _ in COLUMNS))
     for name, row in rows.items():
         cells = ''.join(f'{row[key]:10{form}}' if key in row else ' ' * 10 for key, _, form in COLUMNS)
@@ -95,7 +98,7 @@ def scenes_in(folder, wanted):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('data', type=pathlib.Path, help='folder of scenes')
-    parser.add_argument('--method', nargs='+', default=['paper'], help="dffdepth's method (default: paper)")
+    parser.add_argument('--method', nargs='+', default=[], help="dffdepth's method (default: its own choice)")
     parser.add_argument('--scenes', nargs='+', help='names of the scenes to use (default: all)')
     parser.add_argument('--noise', nargs='+', default=NOISE, choices=NOISE, help='default: all three')
     parser.add_argument('--blur-step', type=float, default=2, help='pixels of blur a plane (default: %(default)s)')
@@ -106,15 +109,16 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     scenes = scenes_in(arguments.data.resolve(), arguments.scenes)
-    runs = [(method, noise) for method in arguments.method for noise in arguments.noise]
+    methods = [f'method={name}' for name in arguments.method] or ['']
+    runs = [(method, noise) for method in methods for noise in arguments.noise]
     total, done, results = len(runs) * len(scenes), 0, []
     for method, noise in runs:
         rows = {}
         for scene in scenes:
-            show_progress(done, total, f'{scene.name}, {method}, noise {noise}')
+            show_progress(done, total, f'{scene.name}, noise {noise}')
             rows[scene.name] = score_scene(scene, method, noise, arguments.blur_step)
             done += 1
-        show_progress(done, total, f'{method}, noise {noise}: done')
+        show_progress(done, total, f'noise {noise}: done')
         rows.update(averages(list(rows.values())))
         print_table(method, noise, rows)
         results.append({'method': method, 'noise': noise, 'planes': PLANES, 'scores': rows})

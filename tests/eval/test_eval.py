@@ -77,7 +77,7 @@ class Elements(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder)
             make_scene(scene)
-            found = evaluate.score_scene(scene, 'paper', 'moderate', 2)
+            found = evaluate.score_scene(scene, '', 'moderate', 2)
         self.assertGreater(found['psnr'], 15)
         self.assertGreater(found['aif_psnr'], 25)
 
