@@ -3,12 +3,12 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 #
 # Checks the FPGA part and ends in `N passed, N failed`. Installs what is missing: GHDL with apt (only then root is
-# needed), the Python tools into build/fpga-venv. Arguments go to run.py.
+# needed), the Python tools into build/fpga-venv, or FPGA_VENV. Arguments go to run.py.
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-venv=$root/build/fpga-venv
+venv=${FPGA_VENV:-$root/build/fpga-venv}
 
 fail() {
     echo "fpga: $1" >&2
@@ -20,7 +20,7 @@ install_debian() {
     local run=()
     [ "$(id -u)" = 0 ] || run=(sudo)
     echo "fpga: installing $*"
-    "${run[@]}" apt-get install -y "$@" || fail "install $* with apt-get, then run this again"
+    { "${run[@]}" apt-get update && "${run[@]}" apt-get install -y "$@"; } || fail "install $* with apt-get, then run this again"
 }
 
 # cocotb needs a Python that comes as a shared library
