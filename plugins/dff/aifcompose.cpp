@@ -36,6 +36,8 @@ static GType gst_aif_blend_get_type()
     static const GEnumValue values[] = {
         {static_cast<int>(dff::AifComposer::Blend::Linear), "Between the two planes around the depth",
          "linear"},
+        {static_cast<int>(dff::AifComposer::Blend::Sharp),
+         "The sharper ones of the planes around the depth: for planes that lie far apart", "sharp"},
         {static_cast<int>(dff::AifComposer::Blend::Soft), "Gaussian over the neighbouring planes: less noise",
          "soft"},
         {0, nullptr, nullptr},

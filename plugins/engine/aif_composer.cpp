@@ -24,12 +24,13 @@ AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
       stack_(queue_, shape),
       in_tiles_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16),
-      positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float)))
+      positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
+      encoder_(DepthEncoder::index(shape.planes))
 {
     const char *sample = shape.format == PixelFormat::Gray16 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
     compose_ = in_tiles_ ? Program(*device_, "aif_rows").kernel("compose_rows")
                          : Program(*device_, "aif", sample).kernel("compose");
-    set_encoder(DepthEncoder::index(shape.planes));
+    set_encoder(encoder_);
 }
 
 void AifComposer::set_encoder(const DepthEncoder &encoder)
@@ -38,6 +39,9 @@ void AifComposer::set_encoder(const DepthEncoder &encoder)
         write_fixed_positions(encoder);
     else
         write_positions(encoder);
+    encoder_ = encoder;
+    if (sharp_)
+        sharp_->set_encoder(encoder);
 }
 
 void AifComposer::write_positions(const DepthEncoder &encoder)
@@ -78,9 +82,16 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
             depth.stride / sizeof(cl_ushort)};
 
         stack_.assign(stack);
+        if (blend == Blend::Sharp) {
+            if (!sharp_)
+                sharp_.emplace(queue_, shape_, encoder_);
+            sharp_->measure(stack_);
+        }
         queue_.begin_stage("compose");
         for (size_t c = 0; c < components_.size(); c++)
-            if (in_tiles_)
+            if (blend == Blend::Sharp)
+                sharp_->compose(stack_, c, pictures.depth, pictures.depth_stride, pictures.output, layout[c]);
+            else if (in_tiles_)
                 compose_rows(pictures, c, layout[c], blend);
             else
                 compose_pixels(pictures, c, layout[c], blend);

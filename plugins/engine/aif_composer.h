@@ -3,6 +3,9 @@
 #pragma once
 
 #include "engine/focus_engine.h"
+#include "engine/sharp_blend.h"
+
+#include <optional>
 
 namespace dff {
 
@@ -13,6 +16,7 @@ public:
     enum class Blend {
         Linear, /* between the two planes around the depth */
         Soft,   /* Gaussian over the neighbouring planes: less noise */
+        Sharp,  /* the sharper ones of the planes around the depth: forgives planes far apart */
     };
 
     /* Throws EngineError. */
@@ -57,6 +61,8 @@ private:
     cl::Buffer positions_;
     float position_scale_ =
         0.0f; /* of aif_rows.cl: positions a depth pixel, 0 where they must be looked up */
+    DepthEncoder encoder_;
+    std::optional<SharpBlend> sharp_; /* made at its first use */
     StageTimes times_;
 };
 
