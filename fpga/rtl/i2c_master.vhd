@@ -50,8 +50,8 @@ architecture rtl of i2c_master is
   -- A bit is SCL low, then released and given time to rise and to pass the synchroniser, then seen high.
   -- A quarter for the high time and a sixth for the rise leave SCL low for the 1.3 us that a fast-mode bus needs.
   constant RISE_CYCLES : positive := maximum_of(BIT_CYCLES / 6, INPUT_CYCLES + 1);
-  constant HIGH_CYCLES : positive := BIT_CYCLES / 4;
-  constant LOW_CYCLES  : positive := BIT_CYCLES - RISE_CYCLES - HIGH_CYCLES;
+  constant HIGH_CYCLES : positive := maximum_of(1, BIT_CYCLES / 4);
+  constant LOW_CYCLES  : positive := maximum_of(1, BIT_CYCLES - RISE_CYCLES - HIGH_CYCLES);
 
   constant RECOVERY_CLOCKS : positive := 9;
 

@@ -208,6 +208,18 @@ begin
 
     end procedure wait_for;
 
+    procedure count_wait is
+    begin
+
+      if (wait_prescale = TICK_CYCLES - 1) then
+        wait_prescale <= 0;
+        wait_time     <= wait_time - 1;
+      else
+        wait_prescale <= wait_prescale + 1;
+      end if;
+
+    end procedure count_wait;
+
     procedure choose_plane is
     begin
 
@@ -375,11 +387,8 @@ begin
             second <= '1';
             state  <= stage_low_state;
             write_lens(stage_registers(7 downto 0), code_b(1 downto 0) & "000000");
-          elsif (wait_prescale = TICK_CYCLES - 1) then
-            wait_prescale <= 0;
-            wait_time     <= wait_time - 1;
           else
-            wait_prescale <= wait_prescale + 1;
+            count_wait;
           end if;
 
         when settle_state =>
@@ -388,11 +397,8 @@ begin
             stop;
           elsif (wait_time = 0) then
             state <= ready_state;
-          elsif (wait_prescale = TICK_CYCLES - 1) then
-            wait_prescale <= 0;
-            wait_time     <= wait_time - 1;
           else
-            wait_prescale <= wait_prescale + 1;
+            count_wait;
           end if;
 
         when ready_state =>
