@@ -24,7 +24,7 @@ SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info
                 frames_[k * planes + plane].reset(converter_.convert(picture));
         }
     }
-    if (!camera_.has_motion())
+    if (!camera_.has_motion() && !stop.stop_requested())
         depth_.reset(make_depth(0));
 }
 

@@ -22,7 +22,8 @@ public:
     bool is_rendered() const { return pictures_ != nullptr; }
     GstClockTime frame_duration() const;
 
-    /* What the stream can be of `allowed`, at the one frame rate, the format that `allowed` names first first. */
+    /* What the stream can be of `allowed`, at the one frame rate, the format that `allowed` names first
+     * first. */
     GstCaps *caps(const GstCaps *allowed) const;
 
     /* Reduces caps to one format and size, the image's own if it can be. Throws if the image cannot be read.

@@ -15,7 +15,7 @@ namespace {
 constexpr double relative_radius = 0.09; /* of the shorter side */
 constexpr double relative_height = 0.4;  /* of the path, from the top */
 constexpr double finest_wave = 3.0;      /* of its texture, pixels */
-constexpr int samples = 4;               /* a pixel and axis */
+constexpr int rim_samples = 4;           /* a pixel and axis */
 
 /* Colour at a point of the unit disk, shaded like a ball under a lamp. */
 Color look_at(const Material &material, double x, double y)
@@ -28,6 +28,7 @@ Color look_at(const Material &material, double x, double y)
 
 cv::Vec4f sample_pixel(const Material &material, double x, double y, double radius)
 {
+    const int samples = std::hypot(x, y) < radius - 1.0 ? 1 : rim_samples;
     cv::Vec4d sum;
     for (int j = 0; j < samples; j++)
         for (int i = 0; i < samples; i++) {

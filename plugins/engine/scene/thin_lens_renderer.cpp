@@ -82,6 +82,8 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
         throw std::invalid_argument("a blur of " + std::to_string(std::lround(largest)) +
                                     " pixels over the sweep is too much; choose a blur-step of at most " +
                                     std::to_string(max_blur_diameter / (planes - 1)));
+    if (stop.stop_requested())
+        return;
     double deepest = 0.0;
     cv::minMaxIdx(scene.depth, nullptr, &deepest);
     farthest_ = layer_of(deepest * (planes - 1));

@@ -54,7 +54,7 @@ private:
 
     cv::Mat3b sharp_;
     double blur_step_;
-    int farthest_;
+    int farthest_ = 0;
     std::vector<SceneTile> tiles_;
 };
 
