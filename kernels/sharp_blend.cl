@@ -9,11 +9,11 @@
  * plane in and a depth that is wrong by a plane shows; the sharpness decides there. Where nothing is sharp all F are
  * alike and the planes are averaged. Without a depth every plane has the first factor 1.
  *
- * Sharpness is ushort[planes][height][width] in 1/64 DN. Samples are SAMPLE, uchar or ushort.
+ * Sharpness is ushort[planes][height][width] in 1/256 DN (at most 46163). Samples are SAMPLE, uchar or ushort.
  */
 #define REACH 2.0f
 #define FLOOR 0.1f /* DN */
-#define SHARPNESS_UNIT (1.0f / 64.0f)
+#define SHARPNESS_UNIT (1.0f / 256.0f)
 #define BOX_RADIUS 3
 
 __kernel void gradient(__global const uchar *stack, __global const ulong2 *rows, __global ushort *sharpness, int width,
