@@ -71,7 +71,7 @@ __kernel void compose_sharp(__global const uchar *stack, __global const ulong2 *
     if (x >= component_size.x)
         return;
     const float u = position_at(depth, positions, depth_stride, x / channels, y, size, subsampling);
-    const int from = u < 0.0f ? 0 : max((int)(u - REACH) + 1, 0);
+    const int from = u < 0.0f ? 0 : max((int)floor(u - REACH) + 1, 0);
     const int to = u < 0.0f ? planes - 1 : min((int)(u + REACH), planes - 1);
     const ulong area = (ulong)size.x * size.y;
     const ulong pixel = (ulong)(y * subsampling) * size.x + x / channels * subsampling;
