@@ -22,11 +22,12 @@ inline float luma_at(__global const uchar *stack, ulong2 rows, int x, int y)
 #endif
 }
 
-/* Index i of n samples mirrored at the ends without repeating them: -1 is 1, n is n - 2. */
+/* Index i of n samples mirrored at the ends without repeating them: -1 is 1, n is n - 2. Farther than n outside stands
+ * the other end. */
 inline int mirror(int i, int n)
 {
     i = abs(i);
-    return i < n ? i : 2 * n - 2 - i;
+    return i < n ? i : max(2 * n - 2 - i, 0);
 }
 
 /* For the kernels in cpu/: 16 lanes that may lie anywhere in memory. */

@@ -86,18 +86,18 @@ __kernel void splat_rows(__global const uchar *sparse, __global const uchar *lum
     int cell = first_cell() + COLUMN;
     for (int left = 0; left < width; left += sigma_xy, cell += COLUMN) {
         const int right = min(left + sigma_xy, width);
-        ulong counts[2][COLUMN - 1]; /* of even and odd pixels, which may follow each other in one cell */
+        ulong counts[4][COLUMN - 1]; /* one for each of 4 pixels, since adding to the same number twice must wait */
         for (int i = 0; i < COLUMN - 1; i++)
-            counts[0][i] = counts[1][i] = 0;
+            counts[0][i] = counts[1][i] = counts[2][i] = counts[3][i] = 0;
         for (int y = top; y < bottom; y++)
             for (int x = left; x < right; x++) {
                 const ulong pixel = (ulong)y * width + x;
                 const ulong plane = sparse[pixel];
                 const ulong known = plane == UNKNOWN_PLANE ? 0 : (1UL << KNOWN_SHIFT) + (plane << PLANES_SHIFT);
-                counts[x & 1][step_of[luma[pixel]]] += 1 + known;
+                counts[x & 3][step_of[luma[pixel]]] += 1 + known;
             }
         for (int i = 0; i < COLUMN - 1; i++) {
-            const ulong count = counts[0][i] + counts[1][i];
+            const ulong count = counts[0][i] + counts[1][i] + counts[2][i] + counts[3][i];
             const float pixels = (float)(count & ((1UL << KNOWN_SHIFT) - 1));
             const float known = (float)(count >> KNOWN_SHIFT & ((1UL << KNOWN_SHIFT) - 1));
             const float planes = (float)(count >> PLANES_SHIFT);

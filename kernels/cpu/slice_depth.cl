@@ -7,11 +7,38 @@
  */
 #define TILE_WIDTH 256 /* multiple of 16 */
 #define TILE_HEIGHT 64
+#define TOGETHER 4 /* rows blurred at once, a divisor of TILE_HEIGHT */
+#if RADIUS <= 24
+#define UNROLL_SMALL __attribute__((opencl_unroll_hint))
+#else
+#define UNROLL_SMALL
+#endif
 #define STRIDE (TILE_WIDTH + 2 * RADIUS + 16)
 
 inline float16 symmetric_tap(const float *centre, int distance)
 {
     return *(const flanes *)(centre - distance) + *(const flanes *)(centre + distance);
+}
+
+/* The Gaussian along y for 16 columns of TOGETHER rows, the first of which stands RADIUS rows below `u`: each row of u
+ * is read once. */
+inline void blur_columns(const float *u, __constant float *taps, float *blurred)
+{
+    float16 sums[TOGETHER];
+    __attribute__((opencl_unroll_hint))
+    for (int k = 0; k < TOGETHER; k++)
+        sums[k] = 0.0f;
+    UNROLL_SMALL
+    for (int i = 0; i <= 2 * RADIUS + TOGETHER - 1; i++) {
+        const float16 here = *(const flanes *)(u + i * STRIDE);
+        __attribute__((opencl_unroll_hint))
+        for (int k = 0; k < TOGETHER; k++)
+            if (i >= k && i <= k + 2 * RADIUS)
+                sums[k] += taps[abs(i - k - RADIUS)] * here;
+    }
+    __attribute__((opencl_unroll_hint))
+    for (int k = 0; k < TOGETHER; k++)
+        *(flanes *)(blurred + k * STRIDE) = sums[k];
 }
 
 /* One work-item a tile: depth[height][stride]. taps: from the Gaussian's centre outwards. With `linear` a position's
@@ -20,8 +47,8 @@ __kernel void slice_depth(__global const float *solution, __global const uchar *
                           __global const ushort *codes, __global ushort *depth, int width, int height, int stride,
                           int sigma_xy, int sigma_luma, int planes, int linear)
 {
-    float u[(TILE_HEIGHT + 2 * RADIUS) * STRIDE];
-    float row[STRIDE];
+    float u[(TILE_HEIGHT + 2 * RADIUS + 1) * STRIDE];
+    float rows[TOGETHER * STRIDE];
     uchar step_of[256];
     const int left = (int)get_group_id(0) * TILE_WIDTH, right = min(left + TILE_WIDTH, width);
     const int top = (int)get_group_id(1) * TILE_HEIGHT, bottom = min(top + TILE_HEIGHT, height);
@@ -43,20 +70,17 @@ __kernel void slice_depth(__global const float *solution, __global const uchar *
                 out[x] = column[step_of[luma_row[x]]];
         }
         for (int x = left - RADIUS; x < from; x++)
-            out[x] = out[-x];
+            out[x] = out[min(-x, to - 1)];
         for (int x = to; x < right + RADIUS; x++)
-            out[x] = out[2 * width - 2 - x];
+            out[x] = out[max(2 * width - 2 - x, from)];
     }
 
     const float top_code = 65534.0f / (planes - 1);
     for (int y = top; y < bottom; y++) {
-        for (int x = 0; x < right - left + 2 * RADIUS; x += 16) {
-            const float *centre = u + (y - top + RADIUS) * STRIDE + x;
-            float16 sum = taps[0] * *(const flanes *)centre;
-            for (int i = 1; i <= RADIUS; i++)
-                sum += taps[i] * symmetric_tap(centre, i * STRIDE);
-            *(flanes *)(row + x) = sum;
-        }
+        if ((y - top) % TOGETHER == 0)
+            for (int x = 0; x < right - left + 2 * RADIUS; x += 16)
+                blur_columns(u + (y - top) * STRIDE + x, taps, rows + x);
+        const float *row = rows + (y - top) % TOGETHER * STRIDE;
         for (int x = 0; x < right - left; x += 16) {
             const float *centre = row + RADIUS + x;
             float16 sum = taps[0] * *(const flanes *)centre;

@@ -68,6 +68,27 @@ TEST_P(MemoryFormats, nothing_outside_of_the_pictures_is_touched)
     }
 }
 
+/* The Gaussian of the largest cells reaches farther than the smallest picture. */
+TEST(Memory, the_largest_cells_fit_the_smallest_picture)
+{
+    const StackShape shape{PixelFormat::Gray8, 64, 64, 2};
+    const TestStack stack(shape);
+    for (const KernelStyle style : {KernelStyle::Pixels, KernelStyle::Tiles}) {
+        DepthParameters parameters;
+        parameters.method = Method::Paper;
+        parameters.grid.sigma_xy = parameters.grid.sigma_luma = 256;
+        std::vector<uint16_t> depth(64 * 64);
+        DepthOutputs outputs;
+        outputs.depth = {std::as_writable_bytes(std::span(depth)).data(), 64 * sizeof(uint16_t)};
+        FocusEngine engine(device_with(style), shape, parameters);
+        EXPECT_TRUE(engine.compute(stack.view(), outputs));
+        /* One cell: one depth. */
+        EXPECT_LE(*std::max_element(depth.begin(), depth.end()) -
+                      *std::min_element(depth.begin(), depth.end()),
+                  64);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Memory, MemoryFormats,
                          testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
                                          PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr,
