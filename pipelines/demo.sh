@@ -50,12 +50,12 @@ seconds() {
         awk '{ print $1 * 3600 + $2 * 60 + $3 }'
 }
 
-# graph SOURCE: focal stacks from SOURCE through depth and all-in-focus, which leave at d. and c.
+# graph SOURCE BLEND: focal stacks from SOURCE through depth and all-in-focus, which leave at d. and c.
 graph() {
     echo "$1 ! tee name=s
         s. ! queue ! dffdepth ! tee name=d
         d. ! queue ! c.depth
-        s. ! queue ! c.stack  aifcompose name=c"
+        s. ! queue ! c.stack  aifcompose name=c blend=$2"
 }
 
 # pictures VIDEO: the files of the demo, made from what leaves the graph; VIDEO goes between the two panels and the encoder.
@@ -80,11 +80,11 @@ simulated_sweep() {
     local camera="lenssweeptestsrc num-buffers=$((planes * stacks)) planes=$planes rate=$rate seed=1"
     local raw="video/x-raw,format=I420,width=$width,height=$height"
     say "Measuring: $stacks simulated sweeps of $planes planes, ${width}x$height, to depth and all-in-focus"
-    launch "$(graph "$camera ! $raw ! focalstackmux") ! fakesink  d. ! queue ! fakesink"
+    launch "$(graph "$camera ! $raw ! focalstackmux" linear) ! fakesink  d. ! queue ! fakesink"
     result="$(awk "BEGIN { printf \"%.1f\", $stacks / $(seconds) }") stacks/s"
     say "$result"
     say "Recording the pictures and the video, with an object that moves"
-    launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux") $(pictures "")"
+    launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux" linear) $(pictures "")"
 }
 
 # photo_size FILE DECODER: WIDTHxHEIGHT
@@ -123,9 +123,10 @@ photographs() {
     fi
     width=$((width / 2 * 2)) height=$((height / 2 * 2))
 
+    # Photographs lie farther apart in focus than the planes of a video sweep: hence blend=sharp.
     say "Aligning $planes photographs of $first, then depth and all-in-focus"
     launch "$(graph "multifilesrc location=$links/%02d stop-index=$((planes - 1)) caps=$type,framerate=$planes/1 ! $decoder !
-        videoconvert ! lenssweeptag planes=$planes ! focalstackmux ! focalstackalign") $(pictures "imagefreeze num-buffers=75 !")"
+        videoconvert ! lenssweeptag planes=$planes ! focalstackmux ! focalstackalign" sharp) $(pictures "imagefreeze num-buffers=75 !")"
     result="1 stack of $planes photographs in $(seconds | xargs printf '%.1f') s"
     rm -r "$links"
 }
