@@ -12,13 +12,13 @@
  */
 #include "low_picture.cl"
 
-#define QUIET 0.1f
-
 /* Smooths a focus volume by [.7t 2 .7t] / (2 + 1.4t) along z, in place; top = T, range = S.
  * Work-items (1, low height). */
 __kernel void evidence(__global float *focus, __global const Noise *noise, __global float *top,
-                       __global float *range, int width, int stride, int planes)
+                       __global float *range, int only_in_noise, int width, int stride, int planes)
 {
+    if (only_in_noise && noise->t <= QUIET)
+        return;
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
     const float side = 0.7f * noise->t / (2.0f + 1.4f * noise->t), centre = 2.0f / (2.0f + 1.4f * noise->t);
     for (int x = 0; x < width; x += 8) {

@@ -5,7 +5,7 @@
  *
  * solved = smooth(w u) / smooth(w), w = c^2 + 1e-4. smooth() is a fast global smoother (Min et al. 2014): for each
  * line the exact solution of x + lambda_i L x = f, L the Laplacian with the affinities exp(-|dA|_1 / 3), over columns
- * and rows in turn, three times with falling lambda_i.
+ * and rows in turn, twice with falling lambda_i.
  */
 #include "low_picture.cl"
 

@@ -87,9 +87,10 @@ __kernel void blur_rows(__global const ushort *source, __global const Noise *noi
         return;
     const size_t row = (get_global_id(2) * get_global_size(1) + get_global_id(1)) * (size_t)width;
     const ushort near = (ushort)noise->taps[1], far = (ushort)noise->taps[2], farthest = (ushort)noise->taps[3];
-    for (int x = 0; x < width; x++)
-        if (x < 3 || x >= width - 3)
-            blurred[row + x] = source[row + x] << 2;
+    for (int i = 0; i < 3; i++) {
+        blurred[row + i] = source[row + i] << 2;
+        blurred[row + width - 1 - i] = source[row + width - 1 - i] << 2;
+    }
     for (int block = 3; block < width - 3; block += 16) {
         const int x = min(block, width - 19);
         __global const ushort *in = source + row + x;

@@ -5,36 +5,39 @@
  *
  *     a = (cov(A, A) + EPSILON 1)^-1 cov(A, C),  b = mean C - a mean A,  filtered = mean a . A + mean b
  *
- * over windows of 2 RADIUS + 1 cells. `system` holds, for each cell, the inverse's 6 numbers and mean A: 9 low
+ * over windows of 5x5 cells with the weights [t 1 1 1 t] in both directions: 3x3 in silence, 5x5 in noise. `system` holds, for each cell, the inverse's 6 numbers and mean A: 9 low
  * pictures that all planes share. Sums over a window are taken over columns first, into the work-item's own `scratch`
  * rows, then over rows.
  */
 #include "low_picture.cl"
 
 #define EPSILON 30.0f
-#define AREA ((2 * RADIUS + 1) * (2 * RADIUS + 1))
 
-/* Sum of 2 RADIUS + 1 neighbouring column sums. */
-inline float8 along_row(__global const float *sums)
+inline float rim_weight(__global const Noise *noise)
 {
-    float8 sum = READ_CELLS(sums);
-    for (int i = 1; i <= RADIUS; i++)
-        sum += READ_CELLS(sums - i) + READ_CELLS(sums + i);
-    return sum;
+    return noise->t > QUIET ? noise->t : 0.0f;
 }
 
-/* Radii above the base one are for noise only. */
-inline int is_idle(__global const Noise *noise)
+inline float area(float rim)
 {
-    return RADIUS > 1 && noise->t <= 0.1f;
+    return (3.0f + 2.0f * rim) * (3.0f + 2.0f * rim);
+}
+
+/* Weight of the j-th row from the middle, and how many rows count at all. */
+#define ROW_WEIGHT(j) ((j) == -2 || (j) == 2 ? rim : 1.0f)
+#define RADIUS (rim > 0.0f ? 2 : 1)
+
+inline float8 along_row(__global const float *sums, float rim)
+{
+    const float8 sum = READ_CELLS(sums) + READ_CELLS(sums - 1) + READ_CELLS(sums + 1);
+    return rim > 0.0f ? sum + rim * (READ_CELLS(sums - 2) + READ_CELLS(sums + 2)) : sum;
 }
 
 /* The sides of the guide must be mirrored. Work-items (1, low height); scratch: 9 rows for each. */
 __kernel void guide_system(__global const float *guide, __global const Noise *noise, __global float *system,
                            __global float *scratch, int width, int stride)
 {
-    if (is_idle(noise))
-        return;
+    const float rim = rim_weight(noise), share = 1.0f / area(rim);
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t picture = (size_t)height * stride, row = (size_t)y * stride + SIDE;
     __global float *sums = scratch + (size_t)y * 9 * stride + SIDE;
@@ -44,15 +47,17 @@ __kernel void guide_system(__global const float *guide, __global const Noise *no
             __global const float *cells = guide + (size_t)reflect(y + j, height) * stride + SIDE + x;
             const float8 red = READ_CELLS(cells), green = READ_CELLS(cells + picture),
                          blue = READ_CELLS(cells + 2 * picture);
-            r += red;
-            g += green;
-            b += blue;
-            rr += red * red;
-            rg += red * green;
-            rb += red * blue;
-            gg += green * green;
-            gb += green * blue;
-            bb += blue * blue;
+            const float8 red_part = ROW_WEIGHT(j) * red, green_part = ROW_WEIGHT(j) * green,
+                         blue_part = ROW_WEIGHT(j) * blue;
+            r += red_part;
+            g += green_part;
+            b += blue_part;
+            rr += red_part * red;
+            rg += red_part * green;
+            rb += red_part * blue;
+            gg += green_part * green;
+            gb += green_part * blue;
+            bb += blue_part * blue;
         }
         const float8 all[9] = {r, g, b, rr, rg, rb, gg, gb, bb};
         for (int i = 0; i < 9; i++)
@@ -61,7 +66,7 @@ __kernel void guide_system(__global const float *guide, __global const Noise *no
     for (int x = 0; x < width; x += 8) {
         float8 mean[9];
         for (int i = 0; i < 9; i++)
-            mean[i] = along_row(sums + i * stride + x) * (1.0f / AREA);
+            mean[i] = along_row(sums + i * stride + x, rim) * share;
         const float8 r = mean[0], g = mean[1], b = mean[2];
         const float8 rr = mean[3] - r * r + EPSILON, rg = mean[4] - r * g, rb = mean[5] - r * b,
                      gg = mean[6] - g * g + EPSILON, gb = mean[7] - g * b, bb = mean[8] - b * b + EPSILON;
@@ -81,8 +86,7 @@ __kernel void fit(__global const float *cost, __global const float *guide, __glo
                   __global const Noise *noise, __global float *coefficients, __global float *scratch, int width,
                   int height, int stride)
 {
-    if (is_idle(noise))
-        return;
+    const float rim = rim_weight(noise), share = 1.0f / area(rim);
     const size_t picture = (size_t)height * stride;
     const int z = (int)get_global_id(2), first = (int)get_global_id(1) * STRIP, last = min(first + STRIP, height);
     __global const float *plane = cost + z * picture + SIDE;
@@ -94,7 +98,7 @@ __kernel void fit(__global const float *cost, __global const float *guide, __glo
             for (int j = -RADIUS; j <= RADIUS; j++) {
                 const size_t row = (size_t)reflect(y + j, height) * stride + x;
                 __global const float *colours = guide + SIDE + row;
-                const float8 value = READ_CELLS(plane + row);
+                const float8 value = ROW_WEIGHT(j) * READ_CELLS(plane + row);
                 c += value;
                 rc += value * READ_CELLS(colours);
                 gc += value * READ_CELLS(colours + picture);
@@ -109,10 +113,10 @@ __kernel void fit(__global const float *cost, __global const float *guide, __glo
             __global const float *cell = system + (size_t)y * stride + SIDE + x;
             const float8 r = READ_CELLS(cell + 6 * picture), g = READ_CELLS(cell + 7 * picture),
                          b = READ_CELLS(cell + 8 * picture);
-            const float8 c = along_row(sums + x) * (1.0f / AREA);
-            const float8 rc = along_row(sums + stride + x) * (1.0f / AREA) - r * c;
-            const float8 gc = along_row(sums + 2 * stride + x) * (1.0f / AREA) - g * c;
-            const float8 bc = along_row(sums + 3 * stride + x) * (1.0f / AREA) - b * c;
+            const float8 c = along_row(sums + x, rim) * share;
+            const float8 rc = along_row(sums + stride + x, rim) * share - r * c;
+            const float8 gc = along_row(sums + 2 * stride + x, rim) * share - g * c;
+            const float8 bc = along_row(sums + 3 * stride + x, rim) * share - b * c;
             const float8 irg = READ_CELLS(cell + picture), irb = READ_CELLS(cell + 2 * picture),
                          igb = READ_CELLS(cell + 4 * picture);
             const float8 red = READ_CELLS(cell) * rc + irg * gc + irb * bc;
@@ -127,14 +131,11 @@ __kernel void fit(__global const float *cost, __global const float *guide, __glo
     }
 }
 
-/* filtered <- MIX of filtered and this: t with a radius for noise, all of it otherwise. The sides of the coefficients
- * must be mirrored. Work-items as for fit(). */
+/* The sides of the coefficients must be mirrored. Work-items as for fit(). */
 __kernel void apply(__global const float *coefficients, __global const float *guide, __global const Noise *noise,
                     __global float *filtered, __global float *scratch, int width, int height, int stride)
 {
-    if (is_idle(noise))
-        return;
-    const float share = (RADIUS > 1 ? noise->t : 1.0f) / AREA, kept = RADIUS > 1 ? 1.0f - noise->t : 0.0f;
+    const float rim = rim_weight(noise), share = 1.0f / area(rim);
     const size_t picture = (size_t)height * stride;
     const int z = (int)get_global_id(2), first = (int)get_global_id(1) * STRIP, last = min(first + STRIP, height);
     __global const float *fitted = coefficients + 4 * z * picture + SIDE;
@@ -144,17 +145,17 @@ __kernel void apply(__global const float *coefficients, __global const float *gu
             for (int x = -8; x < width + 8; x += 8) {
                 float8 sum = 0.0f;
                 for (int j = -RADIUS; j <= RADIUS; j++)
-                    sum += READ_CELLS(fitted + i * picture + (size_t)reflect(y + j, height) * stride + x);
+                    sum += ROW_WEIGHT(j) * READ_CELLS(fitted + i * picture + (size_t)reflect(y + j, height) * stride + x);
                 CELLS(sums + i * stride + x) = sum;
             }
         for (int x = 0; x < width; x += 8) {
             __global const float *colours = guide + (size_t)y * stride + SIDE + x;
-            const float8 value = along_row(sums + x) * READ_CELLS(colours) +
-                                 along_row(sums + stride + x) * READ_CELLS(colours + picture) +
-                                 along_row(sums + 2 * stride + x) * READ_CELLS(colours + 2 * picture) +
-                                 along_row(sums + 3 * stride + x);
+            const float8 value = along_row(sums + x, rim) * READ_CELLS(colours) +
+                                 along_row(sums + stride + x, rim) * READ_CELLS(colours + picture) +
+                                 along_row(sums + 2 * stride + x, rim) * READ_CELLS(colours + 2 * picture) +
+                                 along_row(sums + 3 * stride + x, rim);
             __global float *out = filtered + z * picture + (size_t)y * stride + SIDE + x;
-            CELLS(out) = RADIUS > 1 ? kept * READ_CELLS(out) + share * value : share * value;
+            CELLS(out) = share * value;
         }
     }
 }

@@ -9,7 +9,7 @@
  * full resolution: the planes blended at the nearer u around the pixel. Only pixels near depth edges need G.
  *
  * All pixels between four low cells have the same 4x4 cells: such a square of SCALE x SCALE pixels is worked on at
- * once (at SCALE 8 in four parts). LANES = pixels of a part, EDGE = its side. Stack pixels are read by READ_PIXEL.
+ * once (at SCALE 8 in four parts). LANES = pixels of a part, EDGE = its side.
  */
 #include "low_picture.cl"
 
@@ -25,6 +25,8 @@ typedef float16 lanes;
 #define STORE_LANES(v, p) vstore16(v, 0, p)
 #endif
 #define LANES (EDGE * EDGE)
+
+#define PARTS (SCALE * SCALE / LANES)
 
 #define SAME_DEPTH 0.5f /* planes */
 #define TOLERANCE 60.0f /* DN, the three colours together */
@@ -82,84 +84,131 @@ inline void colours_of(lanes *red, lanes *green, lanes *blue)
 #endif
 }
 
-/* Work-items (1, low height + 1): the pixels between two rows of low cells. The sides of u, nearer and guide must be
+/* Depth pixels of positions u: see depth_code.cl. */
+inline void write_depth(__global ushort *depth, const float *u, __global const ushort *codes, int is_linear, int left,
+                        int top, int planes, int width, int height)
+{
+    const lanes share = clamp(LOAD_LANES(u) * (1.0f / (planes - 1)), 0.0f, 1.0f);
+    float numbers[LANES];
+    STORE_LANES(share * 65534.0f + 1.5f, numbers);
+    for (int j = max(-top, 0); j < min(EDGE, height - top); j++)
+        for (int i = max(-left, 0); i < min(EDGE, width - left); i++) {
+            const ushort number = (ushort)(int)numbers[j * EDGE + i];
+            depth[(size_t)(top + j) * width + left + i] = is_linear ? number : codes[number];
+        }
+}
+
+/* Where the pixels of each part lie between the cells, in low cells, and their nearness to each of the 4x4. */
+typedef struct {
+    lanes across[PARTS];
+    lanes down[PARTS];
+    lanes nearness[PARTS][16];
+} Places;
+
+inline void find_places(Places *places)
+{
+    for (int part = 0; part < PARTS; part++) {
+        float across[LANES], down[LANES], nearness[LANES];
+        for (int lane = 0; lane < LANES; lane++) {
+            across[lane] = (part % (SCALE / EDGE) * EDGE + lane % EDGE + 0.5f) / SCALE;
+            down[lane] = (part / (SCALE / EDGE) * EDGE + lane / EDGE + 0.5f) / SCALE;
+        }
+        places->across[part] = LOAD_LANES(across);
+        places->down[part] = LOAD_LANES(down);
+        for (int k = 0; k < 16; k++) {
+            for (int lane = 0; lane < LANES; lane++) {
+                const float dx = across[lane] - (k % 4 - 1.0f), dy = down[lane] - (k / 4 - 1.0f);
+                nearness[lane] = native_exp((dx * dx + dy * dy) * (-1.0f / 4.5f));
+            }
+            places->nearness[part][k] = LOAD_LANES(nearness);
+        }
+    }
+}
+
+inline float spread(const float *cells)
+{
+    const float16 all = vload16(0, cells);
+    const float8 low8 = min(all.lo, all.hi), high8 = max(all.lo, all.hi);
+    const float4 low4 = min(low8.lo, low8.hi), high4 = max(high8.lo, high8.hi);
+    const float2 low2 = min(low4.lo, low4.hi), high2 = max(high4.lo, high4.hi);
+    return max(high2.x, high2.y) - min(low2.x, low2.y);
+}
+
+/* G of a part: the planes blended at the position `u`. */
+inline void blend_part(const Stack *stack, float u, float t, int left, int top, lanes *red, lanes *green, lanes *blue)
+{
+    const float s = 0.6f + 0.3f * t, reach = 2.5f * s;
+    float sums[3][LANES], weights = 0.0f;
+    for (int lane = 0; lane < LANES; lane++)
+        sums[0][lane] = sums[1][lane] = sums[2][lane] = 0.0f;
+    for (int z = max((int)ceil(u - reach), 0); z <= min((int)(u + reach), stack->planes - 1); z++) {
+        const float weight = native_exp((z - u) * (z - u) * (-1.0f / (2.0f * s * s)));
+        add_pixels(stack, z, left, top, weight, sums[0], sums[1], sums[2]);
+        weights += weight;
+    }
+    *red = LOAD_LANES(sums[0]) / weights;
+    *green = LOAD_LANES(sums[1]) / weights;
+    *blue = LOAD_LANES(sums[2]) / weights;
+    colours_of(red, green, blue);
+}
+
+/* Work-items (1, low height + 2): the pixels between two rows of low cells. The sides of u, nearer and guide must be
  * mirrored. */
 __kernel void upsample_depth(__global const float *u, __global const float *nearer, __global const float *guide,
-                       __global const Noise *noise, __global const float *evidence, __global const uchar *bytes,
-                       __global const ulong2 *table, int4 channels, __global float *upsampled, int planes, int width,
-                       int height, int low_width, int low_height, int stride)
+                             __global const Noise *noise, __global const float *evidence, __global const uchar *bytes,
+                             __global const ulong2 *table, int4 channels, __global const ushort *codes, int is_linear,
+                             __global ushort *depth, int planes, int width, int height, int low_height, int stride)
 {
     const Stack stack = {bytes, table, channels, planes, width, height};
     const int low_y = (int)get_global_id(1) - 1;
     const size_t picture = (size_t)low_height * stride;
-    const float s = 0.6f + 0.3f * noise->t, steepness = -1.0f / (2.0f * s * s), reach = 2.5f * s;
+    Places places;
+    find_places(&places);
     size_t rows[4];
     for (int j = 0; j < 4; j++)
         rows[j] = (size_t)reflect(low_y - 1 + j, low_height) * stride + SIDE;
 
+    if (*evidence < LEAST_EVIDENCE) {
+        for (int y = max(low_y * SCALE + SCALE / 2, 0); y < min(low_y * SCALE + SCALE * 3 / 2, height); y++)
+            for (int x = 0; x < width; x++)
+                depth[(size_t)y * width + x] = codes[0];
+        return;
+    }
     for (int low_x = -1; low_x * SCALE + SCALE / 2 < width; low_x++) {
         float cells[16];
         for (int j = 0; j < 4; j++)
             vstore4(vload4(0, u + rows[j] + low_x - 1), j, cells);
-        const float16 all = vload16(0, cells);
-        const float8 low8 = min(all.lo, all.hi), high8 = max(all.lo, all.hi);
-        const float4 low4 = min(low8.lo, low8.hi), high4 = max(high8.lo, high8.hi);
-        const float2 low2 = min(low4.lo, low4.hi), high2 = max(high4.lo, high4.hi);
-        const int is_edge = max(high2.x, high2.y) - min(low2.x, low2.y) >= SAME_DEPTH;
+        const int is_edge = spread(cells) >= SAME_DEPTH;
         const float blend_at = 0.25f * (nearer[rows[1] + low_x] + nearer[rows[1] + low_x + 1] +
                                         nearer[rows[2] + low_x] + nearer[rows[2] + low_x + 1]);
 
-        for (int part = 0; part < SCALE * SCALE / LANES; part++) {
-            const int part_x = part % (SCALE / EDGE) * EDGE, part_y = part / (SCALE / EDGE) * EDGE;
-            const int left = low_x * SCALE + SCALE / 2 + part_x, top = low_y * SCALE + SCALE / 2 + part_y;
-            float across[LANES], down[LANES]; /* from the cell before, in low cells */
-            for (int lane = 0; lane < LANES; lane++) {
-                across[lane] = (part_x + lane % EDGE + 0.5f) / SCALE;
-                down[lane] = (part_y + lane / EDGE + 0.5f) / SCALE;
-            }
-            const lanes dx = LOAD_LANES(across), dy = LOAD_LANES(down);
+        for (int part = 0; part < PARTS; part++) {
+            const int left = low_x * SCALE + SCALE / 2 + part % (SCALE / EDGE) * EDGE;
+            const int top = low_y * SCALE + SCALE / 2 + part / (SCALE / EDGE) * EDGE;
+            const lanes across = places.across[part], down = places.down[part];
             lanes result;
             if (is_edge) {
-                float sums[3][LANES], weight_sum = 0.0f;
-                for (int lane = 0; lane < LANES; lane++)
-                    sums[0][lane] = sums[1][lane] = sums[2][lane] = 0.0f;
-                for (int z = max((int)ceil(blend_at - reach), 0); z <= min((int)(blend_at + reach), planes - 1); z++) {
-                    const float weight = native_exp(steepness * (z - blend_at) * (z - blend_at));
-                    add_pixels(&stack, z, left, top, weight, sums[0], sums[1], sums[2]);
-                    weight_sum += weight;
-                }
-                lanes red = LOAD_LANES(sums[0]) / weight_sum, green = LOAD_LANES(sums[1]) / weight_sum,
-                      blue = LOAD_LANES(sums[2]) / weight_sum;
-                colours_of(&red, &green, &blue);
-
-                lanes weights = 0.0f;
+                lanes red, green, blue, weights = 0.0f;
+                blend_part(&stack, blend_at, noise->t, left, top, &red, &green, &blue);
                 result = 0.0f;
                 for (int k = 0; k < 16; k++) {
                     __global const float *colour = guide + rows[k / 4] + low_x - 1 + k % 4;
                     const lanes difference = fabs(red - colour[0]) + fabs(green - colour[picture]) +
                                              fabs(blue - colour[2 * picture]);
                     const lanes likeness = max(1.0f - difference * (1.0f / TOLERANCE), 0.0f);
-                    const lanes ex = dx - (k % 4 - 1.0f), ey = dy - (k / 4 - 1.0f);
-                    const lanes weight =
-                        likeness * likeness * native_exp((ex * ex + ey * ey) * (-1.0f / 4.5f)) + 1e-5f;
+                    const lanes weight = likeness * likeness * places.nearness[part][k] + 1e-5f;
                     weights += weight;
                     result += weight * cells[k];
                 }
                 result /= weights;
             } else {
-                result = mix(mix((lanes)(cells[5]), (lanes)(cells[6]), dx), mix((lanes)(cells[9]), (lanes)(cells[10]), dx),
-                             dy);
+                const lanes upper = cells[5] + across * (cells[6] - cells[5]);
+                const lanes lower = cells[9] + across * (cells[10] - cells[9]);
+                result = upper + down * (lower - upper);
             }
-            if (*evidence < LEAST_EVIDENCE)
-                result = NAN;
-
-            float pixels[LANES];
-            STORE_LANES(result, pixels);
-            for (int lane = 0; lane < LANES; lane++) {
-                const int x = left + lane % EDGE, y = top + lane / EDGE;
-                if (x >= 0 && x < width && y >= 0 && y < height)
-                    upsampled[(size_t)y * width + x] = pixels[lane];
-            }
+            float positions[LANES];
+            STORE_LANES(result, positions);
+            write_depth(depth, positions, codes, is_linear, left, top, planes, width, height);
         }
     }
 }
@@ -182,13 +231,14 @@ __kernel void upsample_confidence(__global const float *confidence, __global con
     }
 }
 
-/* u where c is at least half of its 90th percentile and the pixel did not move, NAN elsewhere. `moved` and `confidence`
- * are of full resolution. Work-items (1, height). */
-__kernel void keep_confident(__global const float *u, __global const uchar *confidence, __global const uchar *moved,
-                             int use_moved, __global const float *high_confidence, __global float *kept, int width)
+/* The depth where c is at least half of its 90th percentile and the pixel did not move, 0 elsewhere. `moved` and
+ * `confidence` are of full resolution. Work-items (1, height). */
+__kernel void keep_confident(__global const ushort *depth, __global const uchar *confidence,
+                             __global const uchar *moved, int use_moved, __global const float *high_confidence,
+                             __global ushort *kept, int width)
 {
     const size_t row = get_global_id(1) * (size_t)width;
     const float least = 0.5f * 255.0f * *high_confidence;
     for (int x = 0; x < width; x++)
-        kept[row + x] = confidence[row + x] < least || (use_moved && moved[row + x]) ? NAN : u[row + x];
+        kept[row + x] = confidence[row + x] < least || (use_moved && moved[row + x]) ? 0 : depth[row + x];
 }

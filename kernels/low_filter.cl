@@ -6,20 +6,28 @@
  */
 #include "low_picture.cl"
 
-/* Mirrors the cells at both ends of each row into its sides. */
-__kernel void mirror_sides(__global float *volume, int width, int stride)
+/* Where `noise` is given, only in noise. */
+inline int is_idle(__global const Noise *noise)
 {
+    return noise && noise->t <= QUIET;
+}
+
+/* Mirrors the 8 cells at both ends of each row into its sides. */
+__kernel void mirror_sides(__global float *volume, __global const Noise *noise, int width, int stride)
+{
+    if (is_idle(noise))
+        return;
     __global float *row =
         volume + (get_global_id(2) * get_global_size(1) + get_global_id(1)) * (size_t)stride + SIDE;
-    for (int i = 0; i < SIDE; i++) {
-        row[-1 - i] = row[min(i, width - 1)];
-        row[width + i] = row[max(width - 1 - i, 0)];
-    }
+    CELLS(row - 8) = READ_CELLS(row).s76543210;
+    CELLS(row + width) = READ_CELLS(row + width - 8).s76543210;
 }
 
 __kernel void filter_columns(__global const float *volume, __global float *filtered, __constant float *taps,
-                             int radius, int width, int stride)
+                             int radius, __global const Noise *noise, int width, int stride)
 {
+    if (is_idle(noise))
+        return;
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t picture = get_global_id(2) * height * (size_t)stride + SIDE;
     for (int x = 0; x < width; x += 8) {
@@ -33,8 +41,10 @@ __kernel void filter_columns(__global const float *volume, __global float *filte
 
 /* The sides of `volume` must be mirrored. */
 __kernel void filter_rows(__global const float *volume, __global float *filtered, __constant float *taps, int radius,
-                          int width, int stride)
+                          __global const Noise *noise, int width, int stride)
 {
+    if (is_idle(noise))
+        return;
     const size_t row = (get_global_id(2) * get_global_size(1) + get_global_id(1)) * (size_t)stride + SIDE;
     for (int x = 0; x < width; x += 8) {
         float8 sum = taps[0] * READ_CELLS(volume + row + x);

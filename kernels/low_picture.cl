@@ -4,7 +4,7 @@
  * Included by the kernels of method=volume: pictures at 1/SCALE of the stack's resolution.
  *
  * A low picture is float[height][stride]; cell (x, y) lies at y * stride + SIDE + x, so that every row has at least
- * SIDE cells of room at both ends. Rows are worked on in vectors of 8 from x = 0; what the last vector writes beyond
+ * SIDE cells of room at both ends; mirror_sides fills the 8 nearest. Rows are worked on in vectors of 8 from x = 0; what the last vector writes beyond
  * the width, mirror_sides replaces. A volume is `planes` such pictures one after the other. One work-item takes a row
  * or a strip of rows: this is what vectorises on a CPU.
  */
@@ -37,6 +37,9 @@ typedef struct {
     float t;     /* sigma^2 / (sigma^2 + 1): 0 clean .. 1 noisy; constants slide with it */
     int taps[4]; /* of the pre-blur, in 1/64: centre and three to each side; taps[0] = 64 is none */
 } Noise;
+
+/* Up to this t what is done against noise would change nothing and is left out. */
+#define QUIET 0.1f
 
 /* A stack whose focus measure differs less than this over the planes, in DN, at every cell tells no depth. */
 #define LEAST_EVIDENCE 0.01f

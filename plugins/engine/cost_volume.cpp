@@ -4,9 +4,9 @@
 
 namespace dff {
 
-CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
-    : queue_(queue), low_(low), blur_(queue, low, LowFilter::gaussian(4, 1.0f)),
-      box_(queue, low, LowFilter::box(3))
+CostVolume::CostVolume(CommandQueue &queue, const LowShape &low, const NoiseEstimate &noise)
+    : queue_(queue), low_(low), blur_(queue, low, LowFilter::gaussian(4, 1.0f), noise.noise()),
+      box_(queue, low, LowFilter::box(3), noise.noise())
 {
     const Program program(queue.device(), "cost_volume");
     evidence_kernel_ = program.kernel("evidence");
@@ -35,8 +35,8 @@ void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const N
 void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
 {
     queue_.begin_stage("cost");
-    queue_.run(evidence_kernel_, low_.rows(), focus.volume(), noise.noise(), top_, range_, low_.width,
-               low_.stride, low_.planes);
+    queue_.run(evidence_kernel_, low_.rows(), focus.volume(), noise.noise(), top_, range_, cl_int{0},
+               low_.width, low_.stride, low_.planes);
     quantile(top_, median_top_, 0.5f);
     quantile(range_, median_range_, 0.5f);
     queue_.run(largest_, {1}, range_, evidence_, low_.width, low_.height, low_.stride);
@@ -53,8 +53,8 @@ void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise
     queue_.run(coarse_focus_, low_.rows_of_planes(), blurred_, noise.noise(), coarse_, low_.width,
                low_.stride);
     box_.run(coarse_, between_, coarse_, low_.planes);
-    queue_.run(evidence_kernel_, low_.rows(), coarse_, noise.noise(), coarse_top_, coarse_range_, low_.width,
-               low_.stride, low_.planes);
+    queue_.run(evidence_kernel_, low_.rows(), coarse_, noise.noise(), coarse_top_, coarse_range_, cl_int{1},
+               low_.width, low_.stride, low_.planes);
     quantile(coarse_range_, median_coarse_range_, 0.5f);
     queue_.run(add_coarse_cost_, low_.rows_of_planes(), fine_, coarse_, coarse_top_, range_, coarse_range_,
                median_range_, median_coarse_range_, noise.noise(), cost_, low_.width, low_.stride);

@@ -11,7 +11,7 @@ namespace dff {
 /* What it costs a cell to lie in a plane: see kernels/cost_volume.cl. */
 class CostVolume {
 public:
-    CostVolume(CommandQueue &queue, const LowShape &low);
+    CostVolume(CommandQueue &queue, const LowShape &low, const NoiseEstimate &noise);
 
     /* Smooths the fine focus volume along z in place. */
     void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise);

@@ -10,7 +10,7 @@ namespace dff {
 namespace {
 
 constexpr cl_int above = 0, left = 3; /* among the edges */
-constexpr int iterations = 3;
+constexpr int iterations = 2;
 constexpr double lambda = 100.0;
 
 /* Of Min et al. 2014: falls by four each time, all together lambda. */

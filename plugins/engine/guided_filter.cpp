@@ -16,11 +16,10 @@ GuidedFilter::GuidedFilter(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), sides_(queue, low, LowFilter::box(0)), system_(low.allocate(queue, 9)),
       coefficients_(low.allocate(queue, 4 * size_t(low.planes))), filtered_(low.allocate(queue, low.planes))
 {
-    for (const int radius : {1, 2}) {
-        const Program program(queue.device(), "guided_filter",
-                              "-DRADIUS=" + std::to_string(radius) + " -DSTRIP=" + std::to_string(strip));
-        passes_.push_back({program.kernel("guide_system"), program.kernel("fit"), program.kernel("apply")});
-    }
+    const Program program(queue.device(), "guided_filter", "-DSTRIP=" + std::to_string(strip));
+    guide_system_ = program.kernel("guide_system");
+    fit_ = program.kernel("fit");
+    apply_ = program.kernel("apply");
     const size_t strips = (low.height + strip - 1) / strip;
     const size_t scratch_rows = std::max<size_t>(9 * size_t(low.height), 4 * strips * low.planes);
     scratch_ = queue.allocate(scratch_rows * low.stride * sizeof(cl_float));
@@ -32,15 +31,12 @@ void GuidedFilter::run(const cl::Buffer &cost, const cl::Buffer &guide, const No
                              static_cast<size_t>(low_.planes));
     queue_.begin_stage("guided-filter");
     sides_.mirror_sides(cost, low_.planes);
-    for (Pass &pass : passes_) {
-        queue_.run(pass.guide_system, low_.rows(), guide, noise.noise(), system_, scratch_, low_.width,
-                   low_.stride);
-        queue_.run(pass.fit, strips, cost, guide, system_, noise.noise(), coefficients_, scratch_, low_.width,
-                   low_.height, low_.stride);
-        sides_.mirror_sides(coefficients_, 4 * size_t(low_.planes));
-        queue_.run(pass.apply, strips, coefficients_, guide, noise.noise(), filtered_, scratch_, low_.width,
-                   low_.height, low_.stride);
-    }
+    queue_.run(guide_system_, low_.rows(), guide, noise.noise(), system_, scratch_, low_.width, low_.stride);
+    queue_.run(fit_, strips, cost, guide, system_, noise.noise(), coefficients_, scratch_, low_.width,
+               low_.height, low_.stride);
+    sides_.mirror_sides(coefficients_, 4 * size_t(low_.planes));
+    queue_.run(apply_, strips, coefficients_, guide, noise.noise(), filtered_, scratch_, low_.width,
+               low_.height, low_.stride);
 }
 
 } // namespace dff

@@ -7,8 +7,7 @@
 
 namespace dff {
 
-/* Colour guided filter of a cost volume: see kernels/guided_filter.cl. Radius 1; in noise that of radius 2 is
- * mixed in by t. */
+/* Colour guided filter of a cost volume: see kernels/guided_filter.cl. Its window is wider in noise. */
 class GuidedFilter {
 public:
     GuidedFilter(CommandQueue &queue, const LowShape &low);
@@ -19,14 +18,10 @@ public:
     const cl::Buffer &filtered() const { return filtered_; } /* low pictures [z] */
 
 private:
-    struct Pass {
-        cl::Kernel guide_system, fit, apply;
-    };
-
     CommandQueue &queue_;
     LowShape low_;
     LowFilter sides_;
-    std::vector<Pass> passes_;
+    cl::Kernel guide_system_, fit_, apply_;
     cl::Buffer system_, coefficients_, scratch_, filtered_;
 };
 

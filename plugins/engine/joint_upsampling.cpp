@@ -31,7 +31,7 @@ cl_int4 channels_of(PixelFormat format)
 
 JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low)
     : queue_(queue), shape_(shape), low_(low), channels_(channels_of(shape.format)),
-      u_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_float)))
+      depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
 {
     const Program program(queue.device(), "joint_upsampling", build_options(shape.format, low.scale));
     upsample_ = program.kernel("upsample_depth");
@@ -40,13 +40,14 @@ JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, c
 }
 
 void JointUpsampling::run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
-                          const NoiseEstimate &noise, const StackBuffer &stack)
+                          const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder)
 {
     queue_.begin_stage("upsample");
     queue_.run(upsample_, {1, static_cast<size_t>(low_.height) + 2}, low_u, guide.nearer(), guide.guide(),
-               noise.noise(), cost.evidence(), stack.bytes(), stack.layout(), channels_, u_,
-               static_cast<cl_int>(shape_.planes), static_cast<cl_int>(shape_.width),
-               static_cast<cl_int>(shape_.height), low_.width, low_.height, low_.stride);
+               noise.noise(), cost.evidence(), stack.bytes(), stack.layout(), channels_, coder.codes(),
+               cl_int{coder.is_linear()}, depth_, static_cast<cl_int>(shape_.planes),
+               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), low_.height,
+               low_.stride);
 }
 
 void JointUpsampling::run_confidence(const SemiGlobalMatching &matching, const CostVolume &cost)
@@ -61,10 +62,11 @@ void JointUpsampling::run_confidence(const SemiGlobalMatching &matching, const C
 void JointUpsampling::run_sparse(const DepthFill &fill, const ZEntropy *motion)
 {
     if (!sparse_())
-        sparse_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_float));
+        sparse_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
     queue_.begin_stage("sparse-depth");
-    queue_.run(keep_confident_, {1, shape_.height}, u_, confidence_, motion ? motion->moved() : confidence_,
-               cl_int{motion != nullptr}, fill.high_confidence(), sparse_, static_cast<cl_int>(shape_.width));
+    queue_.run(keep_confident_, {1, shape_.height}, depth_, confidence_,
+               motion ? motion->moved() : confidence_, cl_int{motion != nullptr}, fill.high_confidence(),
+               sparse_, static_cast<cl_int>(shape_.width));
 }
 
 } // namespace dff

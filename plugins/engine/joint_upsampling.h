@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/depth_coder.h"
 #include "engine/depth_fill.h"
 #include "engine/guide_image.h"
 #include "engine/z_entropy.h"
@@ -15,15 +16,15 @@ public:
 
     /* `guide` at the low `u`. */
     void run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
-             const NoiseEstimate &noise, const StackBuffer &stack);
+             const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder);
     void run_confidence(const SemiGlobalMatching &matching, const CostVolume &cost);
 
     /* After both; leaves pixels that moved out, where `motion` is given. */
     void run_sparse(const DepthFill &fill, const ZEntropy *motion);
 
-    const cl::Buffer &u() const { return u_; } /* float[height][width]; NAN without evidence */
+    const cl::Buffer &depth() const { return depth_; } /* ushort[height][width]; 0 without evidence */
     const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
-    const cl::Buffer &sparse() const { return sparse_; }         /* float[height][width], NAN where unknown */
+    const cl::Buffer &sparse() const { return sparse_; }         /* ushort[height][width], 0 where unknown */
 
 private:
     CommandQueue &queue_;
@@ -31,7 +32,7 @@ private:
     LowShape low_;
     cl_int4 channels_;
     cl::Kernel upsample_, upsample_confidence_, keep_confident_;
-    cl::Buffer u_, confidence_, sparse_;
+    cl::Buffer depth_, confidence_, sparse_;
 };
 
 } // namespace dff

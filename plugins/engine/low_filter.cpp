@@ -8,8 +8,9 @@
 
 namespace dff {
 
-LowFilter::LowFilter(CommandQueue &queue, const LowShape &low, std::span<const float> taps)
-    : queue_(queue), low_(low), taps_(queue.allocate(taps.size_bytes())),
+LowFilter::LowFilter(CommandQueue &queue, const LowShape &low, std::span<const float> taps,
+                     const cl::Buffer &noise)
+    : queue_(queue), low_(low), taps_(queue.allocate(taps.size_bytes())), noise_(noise),
       radius_(static_cast<cl_int>(taps.size()) - 1)
 {
     const Program program(queue.device(), "low_filter");
@@ -40,16 +41,16 @@ std::vector<float> LowFilter::gaussian(unsigned radius, float sigma)
 void LowFilter::run(const cl::Buffer &source, const cl::Buffer &between, const cl::Buffer &filtered,
                     size_t pictures)
 {
-    queue_.run(filter_columns_, low_.rows_of(pictures), source, between, taps_, radius_, low_.width,
+    queue_.run(filter_columns_, low_.rows_of(pictures), source, between, taps_, radius_, noise_, low_.width,
                low_.stride);
     mirror_sides(between, pictures);
-    queue_.run(filter_rows_, low_.rows_of(pictures), between, filtered, taps_, radius_, low_.width,
+    queue_.run(filter_rows_, low_.rows_of(pictures), between, filtered, taps_, radius_, noise_, low_.width,
                low_.stride);
 }
 
 void LowFilter::mirror_sides(const cl::Buffer &volume, size_t pictures)
 {
-    queue_.run(mirror_sides_, low_.rows_of(pictures), volume, low_.width, low_.stride);
+    queue_.run(mirror_sides_, low_.rows_of(pictures), volume, noise_, low_.width, low_.stride);
 }
 
 } // namespace dff

@@ -11,8 +11,9 @@ namespace dff {
 /* Separable symmetric filters of low pictures. */
 class LowFilter {
 public:
-    /* `taps` from the centre outward. */
-    LowFilter(CommandQueue &queue, const LowShape &low, std::span<const float> taps);
+    /* `taps` from the centre outward. With a `noise` of NoiseEstimate, does nothing in silence. */
+    LowFilter(CommandQueue &queue, const LowShape &low, std::span<const float> taps,
+              const cl::Buffer &noise = cl::Buffer());
 
     static std::vector<float> box(unsigned radius);
     static std::vector<float> gaussian(unsigned radius, float sigma);
@@ -28,7 +29,7 @@ private:
     CommandQueue &queue_;
     LowShape low_;
     cl::Kernel mirror_sides_, filter_columns_, filter_rows_;
-    cl::Buffer taps_;
+    cl::Buffer taps_, noise_;
     cl_int radius_;
 };
 

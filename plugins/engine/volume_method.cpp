@@ -7,9 +7,8 @@ namespace dff {
 VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters)
     : queue_(queue), shape_(shape), parameters_(parameters), low_(shape, parameters.scale),
       noise_(queue, shape, low_.scale), small_(queue, shape, low_), focus_(queue, shape, low_),
-      cost_(queue, low_), guide_(queue, low_), filter_(queue, low_), matching_(queue, low_),
-      fill_(queue, low_), upsampling_(queue, shape, low_),
-      depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
+      cost_(queue, low_, noise_), guide_(queue, low_), filter_(queue, low_), matching_(queue, low_),
+      fill_(queue, low_), upsampling_(queue, shape, low_)
 {
 }
 
@@ -24,21 +23,15 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     matching_.run(filter_.filtered(), guide_.guide(), noise_);
     fill_.run(matching_);
     guide_.run_at(matching_.u(), small_, noise_);
-    upsampling_.run(matching_.u(), guide_, cost_, noise_, stack);
-    queue_.begin_stage("code");
-    coder.code_positions(upsampling_.u(), depth_);
+    upsampling_.run(matching_.u(), guide_, cost_, noise_, stack, coder);
 
     const bool mask_motion = wanted.sparse && parameters_.motion_mask;
     if (wanted.motion || mask_motion)
         run_motion(stack);
     if (wanted.confidence || wanted.sparse)
         upsampling_.run_confidence(matching_, cost_);
-    if (wanted.sparse) {
-        if (!sparse_depth_())
-            sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
+    if (wanted.sparse)
         upsampling_.run_sparse(fill_, mask_motion ? entropy_.get() : nullptr);
-        coder.code_positions(upsampling_.sparse(), sparse_depth_);
-    }
 }
 
 void VolumeMethod::run_motion(const StackBuffer &stack)

@@ -17,8 +17,8 @@ public:
 
     void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) override;
 
-    const cl::Buffer &depth() const override { return depth_; }
-    const cl::Buffer &sparse() const override { return sparse_depth_; }
+    const cl::Buffer &depth() const override { return upsampling_.depth(); }
+    const cl::Buffer &sparse() const override { return upsampling_.sparse(); }
     const cl::Buffer &confidence() const override { return upsampling_.confidence(); }
     const cl::Buffer &motion() const override { return entropy_->moved(); }
 
@@ -40,7 +40,6 @@ private:
     JointUpsampling upsampling_;
     std::unique_ptr<Luma> luma_;
     std::unique_ptr<ZEntropy> entropy_;
-    cl::Buffer depth_, sparse_depth_;
 };
 
 } // namespace dff
