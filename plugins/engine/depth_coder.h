@@ -28,12 +28,6 @@ public:
     /* ushort[height][width] from uchar planes, 0 from SparseDepth::unknown_plane. */
     void code_planes(const cl::Buffer &planes, const cl::Buffer &depth);
 
-    /* ushort[65536]: the pixel for each position, as depth_code.cl numbers them. */
-    const cl::Buffer &codes() const { return codes_; }
-
-    /* A position's pixel is its number, so that nobody needs to look it up. */
-    bool is_linear() const { return is_linear_; }
-
 private:
     CommandQueue &queue_;
     StackShape shape_;

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * Each kernel of method=volume against its twin, fed with what the device's stage before it gave. */
+#include "engine/guided_filter.h"
+#include "engine/joint_upsampling.h"
+#include "twin_volume.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace dff;
+
+namespace {
+
+/* Waves in both directions, whose sum Immerkaer's filter takes for free of noise; sharpest along a slope. */
+TestStack silent_stack(const StackShape &shape)
+{
+    TestStack stack(shape);
+    const std::vector<Component> components = shape.components();
+    for (size_t c = 0; c < components.size(); c++)
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 0; y < components[c].height; y++)
+                for (unsigned x = 0; x < components[c].width; x++) {
+                    const float contrast = 1.0f / (1.0f + std::abs(z - 5.0f * x / components[c].width));
+                    const float value =
+                        128.0f + contrast * 30.0f * (std::sin(0.9f * x) + std::sin(0.8f * y + c));
+                    const RowLayout &rows = stack.layout[c * shape.planes + z];
+                    for (unsigned byte = 0; byte < components[c].sample_bytes; byte++)
+                        stack.memory[rows.offset + rows.stride * y + components[c].sample_bytes * x + byte] =
+                            static_cast<std::byte>(value);
+                }
+    return stack;
+}
+
+struct Case {
+    PixelFormat format;
+    unsigned width, height, planes, scale;
+    bool silent;
+};
+
+class VolumeStages : public testing::TestWithParam<Case> {
+protected:
+    VolumeStages()
+        : shape{GetParam().format, GetParam().width, GetParam().height, GetParam().planes},
+          stack(GetParam().silent ? silent_stack(shape) : TestStack(shape)), queue(Device::open("")),
+          buffer(queue, shape), low(shape, GetParam().scale), coder(queue, shape),
+          noise_stage(queue, shape, low.scale), small_stage(queue, shape, low),
+          focus_stage(queue, shape, low), cost_stage(queue, low, noise_stage), guide_stage(queue, low),
+          filter_stage(queue, low), matching(queue, low), fill_stage(queue, low),
+          upsampling(queue, shape, low)
+    {
+        buffer.assign(stack.view());
+        noise_stage.run(buffer);
+        small_stage.run(buffer);
+        focus_stage.run(buffer, noise_stage);
+        noise = read_back<twin::Noise>(queue, noise_stage.noise(), 1)[0];
+    }
+
+    Volume read(const cl::Buffer &buffer_on_device, unsigned pictures, unsigned first = 0, unsigned step = 1)
+    {
+        const auto cells =
+            read_back<float>(queue, buffer_on_device,
+                             size_t{1} * ((pictures - 1) * step + first + 1) * low.height * low.stride);
+        Volume volume(low.width, low.height, pictures);
+        for (unsigned z = 0; z < pictures; z++)
+            for (unsigned y = 0; y < volume.height; y++)
+                for (unsigned x = 0; x < volume.width; x++)
+                    volume.at(x, y, z) = cells[((size_t{z} * step + first) * low.height + y) * low.stride +
+                                               LowShape::side + x];
+        return volume;
+    }
+
+    twin::Colours read_colours(const cl::Buffer &buffer_on_device, unsigned planes)
+    {
+        return {read(buffer_on_device, planes, 0, 3), read(buffer_on_device, planes, 1, 3),
+                read(buffer_on_device, planes, 2, 3)};
+    }
+
+    twin::Colours read_small() { return read_colours(small_stage.colours(), shape.planes); }
+
+    /* `rim`: cells at the border that may differ. */
+    static void expect_alike(const Volume &found, const Volume &expected, float tolerance, unsigned rim = 0)
+    {
+        ASSERT_EQ(found.values.size(), expected.values.size());
+        for (unsigned z = 0; z < found.planes; z++)
+            for (unsigned y = rim; y + rim < found.height; y++)
+                for (unsigned x = rim; x + rim < found.width; x++)
+                    ASSERT_NEAR(found.at(x, y, z), expected.at(x, y, z), tolerance)
+                        << x << "," << y << "," << z;
+    }
+
+    /* Runs everything up to the matching. */
+    void run_to_matching()
+    {
+        cost_stage.run(focus_stage, small_stage, noise_stage);
+        guide_stage.run(cost_stage, small_stage, noise_stage);
+        filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
+        matching.run(filter_stage.filtered(), guide_stage.guide(), noise_stage);
+    }
+
+    StackShape shape;
+    TestStack stack;
+    CommandQueue queue;
+    StackBuffer buffer;
+    LowShape low;
+    DepthCoder coder;
+    NoiseEstimate noise_stage;
+    SmallPlanes small_stage;
+    FocusVolume focus_stage;
+    CostVolume cost_stage;
+    GuideImage guide_stage;
+    GuidedFilter filter_stage;
+    SemiGlobalMatching matching;
+    DepthFill fill_stage;
+    JointUpsampling upsampling;
+    twin::Noise noise;
+};
+
+} // namespace
+
+TEST_P(VolumeStages, noise_is_told_from_silence)
+{
+    if (GetParam().silent)
+        EXPECT_LT(noise.t, 0.3f);
+    else
+        EXPECT_GT(noise.t, 0.9f);
+    EXPECT_EQ(noise.taps[0] + 2 * (noise.taps[1] + noise.taps[2] + noise.taps[3]), 64);
+}
+
+TEST_P(VolumeStages, small_planes_and_focus_volume)
+{
+    const twin::Colours small = read_small();
+    const Volume luma = twin::mean_of_colours(stack);
+    const Volume small_luma = twin::average_squares(luma, low.scale);
+    if (shape.format != PixelFormat::I420 && shape.format != PixelFormat::Nv12)
+        for (size_t i = 0; i < small_luma.values.size(); i++)
+            ASSERT_NEAR((small[0].values[i] + small[1].values[i] + small[2].values[i]) / 3.0f,
+                        small_luma.values[i], 0.01f);
+    else /* Y is a weighted sum of R, G, B */
+        for (size_t i = 0; i < small_luma.values.size(); i++)
+            ASSERT_NEAR(0.299f * small[0].values[i] + 0.587f * small[1].values[i] +
+                            0.114f * small[2].values[i],
+                        small_luma.values[i], 0.1f);
+    expect_alike(read(focus_stage.volume(), shape.planes), twin::fine_focus(luma, noise, low.scale),
+                 noise.taps[0] == 64 ? 0.2f : 0.6f, 3);
+}
+
+TEST_P(VolumeStages, cost_volume)
+{
+    const twin::Colours small = read_small();
+    const Volume focus = read(focus_stage.volume(), shape.planes);
+    cost_stage.run(focus_stage, small_stage, noise_stage);
+    const Volume fine = twin::smooth_along_z(focus, noise.t);
+    expect_alike(read(focus_stage.volume(), shape.planes), fine, 1e-3f);
+    const Volume fine_cost = twin::fine_cost(fine, twin::median(twin::top_of(fine).values));
+    expect_alike(read(cost_stage.fine(), shape.planes), fine_cost, 0.02f);
+    const Volume coarse = twin::smooth_along_z(twin::coarse_focus(small), noise.t);
+    expect_alike(read(cost_stage.cost(), shape.planes),
+                 twin::cost(fine_cost, fine, coarse, twin::median(twin::range_of(fine).values),
+                            twin::median(twin::range_of(coarse).values), noise.t),
+                 0.03f, 2);
+}
+
+TEST_P(VolumeStages, guide_image)
+{
+    const twin::Colours small = read_small();
+    cost_stage.run(focus_stage, small_stage, noise_stage);
+    guide_stage.run(cost_stage, small_stage, noise_stage);
+    const Volume u = read(guide_stage.nearer(), 1),
+                 expected = twin::nearer_first_guess(read(cost_stage.fine(), shape.planes));
+    size_t other = 0;
+    for (size_t i = 0; i < u.values.size(); i++)
+        other += u.values[i] != expected.values[i];
+    EXPECT_LE(other, u.values.size() / 100) << "rounding may decide between two planes alike";
+    const twin::Colours guide = twin::denoise(twin::blend(small, u, noise.t), noise.sigma, low.scale);
+    const twin::Colours found = read_colours(guide_stage.guide(), 1);
+    for (size_t c = 0; c < 3; c++)
+        expect_alike(found[c], guide[c], 0.5f);
+}
+
+TEST_P(VolumeStages, guided_filter_and_matching)
+{
+    run_to_matching();
+    const twin::Colours guide = read_colours(guide_stage.guide(), 1);
+    const Volume filtered = read(filter_stage.filtered(), shape.planes);
+    expect_alike(filtered, twin::guided_filter(read(cost_stage.cost(), shape.planes), guide, noise.t), 0.01f);
+
+    const Volume total = twin::match(filtered, guide, noise.t);
+    const Volume u = read(matching.u(), 1), expected = twin::decide(total);
+    size_t other = 0;
+    for (size_t i = 0; i < u.values.size(); i++)
+        other += std::abs(u.values[i] - expected.values[i]) > 0.05f;
+    EXPECT_LE(other, u.values.size() / 100);
+    expect_alike(read(matching.confidence(), 1), twin::mean_over_planes(filtered), 1e-3f);
+}
+
+TEST_P(VolumeStages, fill_and_upsampling)
+{
+    run_to_matching();
+    const twin::Colours guide = read_colours(guide_stage.guide(), 1);
+    const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
+    fill_stage.run(matching);
+    const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
+    const Volume filled = read(matching.u(), 1);
+    expect_alike(filled, twin::fill(u, confidence, guide, high), 0.05f);
+
+    guide_stage.run_at(matching.u(), small_stage, noise_stage);
+    upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder);
+    if (!is_interleaved(shape.format) && shape.format != PixelFormat::Gray8)
+        return; /* its pixels' colours are what the small planes' are: tried above */
+    twin::Colours planes{Volume(shape.width, shape.height, shape.planes),
+                         Volume(shape.width, shape.height, shape.planes),
+                         Volume(shape.width, shape.height, shape.planes)};
+    const cl_int4 channels = colour_channels(shape.format);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 0; y < shape.height; y++)
+            for (unsigned x = 0; x < shape.width; x++)
+                for (unsigned c = 0; c < 3; c++)
+                    planes[c].at(x, y, z) =
+                        shape.format == PixelFormat::Gray8
+                            ? stack.sample(0, x, y, z)
+                            : stack.sample(0, x * channels.s[0] + channels.s[c + 1], y, z);
+    const Volume expected =
+        twin::upsample(filled, read_colours(guide_stage.guide(), 1), planes, noise.t, low.scale);
+    const auto depth = read_back<uint16_t>(queue, upsampling.depth(), expected.values.size());
+    const DepthEncoder encoder = DepthEncoder::index(shape.planes);
+    size_t other = 0;
+    for (size_t i = 0; i < depth.size(); i++)
+        other += std::abs(encoder.decode(depth[i]).value_or(-1.0) - expected.values[i]) > 0.02f;
+    EXPECT_LE(other, depth.size() / 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Volume, VolumeStages,
+                         testing::Values(Case{PixelFormat::Bgr, 121, 99, 6, 2, false},
+                                         Case{PixelFormat::Bgr, 121, 99, 6, 2, true},
+                                         Case{PixelFormat::Rgbx, 160, 131, 10, 4, false},
+                                         Case{PixelFormat::Gray8, 163, 128, 5, 4, true},
+                                         Case{PixelFormat::Gray16, 90, 70, 4, 2, false},
+                                         Case{PixelFormat::I420, 133, 117, 4, 4, false},
+                                         Case{PixelFormat::Nv12, 150, 66, 3, 2, true},
+                                         Case{PixelFormat::Gray8, 256, 250, 3, 8, false},
+                                         Case{PixelFormat::Gray8, 64, 64, 2, 2, false}));

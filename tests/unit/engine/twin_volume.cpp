@@ -1,0 +1,283 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "twin_volume.h"
+
+#include "engine/luma.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace dff::twin {
+
+namespace {
+
+/* Ends repeated: -1 is 0. */
+int reflect(int i, unsigned n)
+{
+    const int size = static_cast<int>(n);
+    i = i < 0 ? -1 - i : i;
+    i = i < size ? i : 2 * size - 1 - i;
+    return std::clamp(i, 0, size - 1);
+}
+
+/* Ends not repeated: -1 is 1. */
+int mirror(int i, unsigned n)
+{
+    const int size = static_cast<int>(n);
+    i = std::abs(i);
+    return std::clamp(i < size ? i : 2 * size - 2 - i, 0, size - 1);
+}
+
+float at(const Volume &v, int x, int y, unsigned z = 0)
+{
+    return v.at(reflect(x, v.width), reflect(y, v.height), z);
+}
+
+using Value = std::function<float(int x, int y, unsigned z)>;
+
+Volume make(unsigned width, unsigned height, unsigned planes, const Value &value)
+{
+    Volume result(width, height, planes);
+    for (unsigned z = 0; z < planes; z++)
+        for (unsigned y = 0; y < height; y++)
+            for (unsigned x = 0; x < width; x++)
+                result.at(x, y, z) = value(static_cast<int>(x), static_cast<int>(y), z);
+    return result;
+}
+
+Volume like(const Volume &v, const Value &value)
+{
+    return make(v.width, v.height, v.planes, value);
+}
+
+/* taps from the centre outward, their sum over both sides 1. */
+Volume filter(const Volume &v, const std::vector<float> &taps, int (*border)(int, unsigned))
+{
+    const int radius = static_cast<int>(taps.size()) - 1;
+    return like(v, [&](int x, int y, unsigned z) {
+        float sum = 0.0f;
+        for (int j = -radius; j <= radius; j++)
+            for (int i = -radius; i <= radius; i++)
+                sum += taps[std::abs(i)] * taps[std::abs(j)] *
+                       v.at(border(x + i, v.width), border(y + j, v.height), z);
+        return sum;
+    });
+}
+
+Volume box(const Volume &v, int radius)
+{
+    return filter(v, std::vector<float>(radius + 1, 1.0f / static_cast<float>(2 * radius + 1)), reflect);
+}
+
+Volume sml(const Volume &v, int step, int (*border_x)(int, unsigned), int (*border_y)(int, unsigned))
+{
+    return like(v, [&](int x, int y, unsigned z) {
+        const auto sample = [&](int i, int j) {
+            return v.at(border_x(i, v.width), border_y(j, v.height), z);
+        };
+        return std::abs(2 * sample(x, y) - sample(x - step, y) - sample(x + step, y)) +
+               std::abs(2 * sample(x, y) - sample(x, y - step) - sample(x, y + step));
+    });
+}
+
+float distance(const Colours &a, int ax, int ay, const Colours &b, int bx, int by)
+{
+    float sum = 0.0f;
+    for (size_t c = 0; c < a.size(); c++)
+        sum += std::abs(at(a[c], ax, ay) - at(b[c], bx, by));
+    return sum;
+}
+
+} // namespace
+
+Volume mean_of_colours(const TestStack &stack)
+{
+    const StackShape &s = stack.shape;
+    return make(s.width, s.height, s.planes, [&](int x, int y, unsigned z) -> float {
+        if (s.format == PixelFormat::Gray16)
+            return (stack.sample(0, 2 * x, y, z) + 256.0f * stack.sample(0, 2 * x + 1, y, z)) * 255.0f /
+                   65535.0f;
+        if (!is_interleaved(s.format))
+            return stack.sample(0, x, y, z);
+        const int first = x * colour_channels(s.format).s[0];
+        return (stack.sample(0, first, y, z) + stack.sample(0, first + 1, y, z) +
+                stack.sample(0, first + 2, y, z)) /
+               3.0f;
+    });
+}
+
+Volume average_squares(const Volume &planes, unsigned scale)
+{
+    const int size = static_cast<int>(scale);
+    return make(planes.width / scale, planes.height / scale, planes.planes, [&](int x, int y, unsigned z) {
+        float sum = 0.0f;
+        for (int j = 0; j < size; j++)
+            for (int i = 0; i < size; i++)
+                sum += planes.at(x * size + i, y * size + j, z);
+        return sum / static_cast<float>(size * size);
+    });
+}
+
+Volume fine_focus(const Volume &luma, const Noise &noise, unsigned scale)
+{
+    std::vector<float> taps;
+    for (const cl_int tap : noise.taps)
+        taps.push_back(static_cast<float>(tap) / 64.0f);
+    const Volume blurred = filter(luma, taps, mirror);
+    const Volume response = sml(blurred, 1, mirror, mirror);
+    return average_squares(
+        filter(response, std::vector<float>(scale / 2 + 1, 1.0f / static_cast<float>(scale + 1)), mirror),
+        scale);
+}
+
+Volume smooth_along_z(const Volume &focus, float t)
+{
+    const int last = static_cast<int>(focus.planes) - 1;
+    return like(focus, [&](int x, int y, unsigned z) {
+        const int plane = static_cast<int>(z);
+        return (0.7f * t *
+                    (focus.at(x, y, std::max(plane - 1, 0)) + focus.at(x, y, std::min(plane + 1, last))) +
+                2.0f * focus.at(x, y, z)) /
+               (2.0f + 1.4f * t);
+    });
+}
+
+Volume top_of(const Volume &focus)
+{
+    return make(focus.width, focus.height, 1, [&](int x, int y, unsigned) {
+        float top = 0.0f;
+        for (unsigned z = 0; z < focus.planes; z++)
+            top = std::max(top, focus.at(x, y, z));
+        return top;
+    });
+}
+
+Volume range_of(const Volume &focus)
+{
+    const Volume top = top_of(focus);
+    return make(focus.width, focus.height, 1, [&](int x, int y, unsigned) {
+        float least = focus.at(x, y, 0);
+        for (unsigned z = 1; z < focus.planes; z++)
+            least = std::min(least, focus.at(x, y, z));
+        return top.at(x, y) - least;
+    });
+}
+
+float median(std::vector<float> values)
+{
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+}
+
+Volume fine_cost(const Volume &focus, float median_top)
+{
+    const Volume top = top_of(focus);
+    return like(focus, [&](int x, int y, unsigned z) {
+        return (top.at(x, y) - focus.at(x, y, z)) / (top.at(x, y) + 1.5f * median_top + 4.0f);
+    });
+}
+
+Volume coarse_focus(const Colours &small)
+{
+    std::vector<float> taps;
+    float sum = 0.0f;
+    for (int i = 0; i <= 4; i++) {
+        taps.push_back(std::exp(-0.5f * i * i));
+        sum += i == 0 ? taps[i] : 2.0f * taps[i];
+    }
+    for (float &tap : taps)
+        tap /= sum;
+    Volume result(small[0].width, small[0].height, small[0].planes);
+    for (const Volume &colour : small) {
+        const Volume response = sml(filter(colour, taps, reflect), 2, reflect, mirror);
+        for (size_t i = 0; i < result.values.size(); i++)
+            result.values[i] += response.values[i] / 3.0f;
+    }
+    return box(result, 3);
+}
+
+Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, float median_fine_range,
+            float median_range, float t)
+{
+    const Volume fine_range = range_of(fine), range = range_of(coarse), top = top_of(coarse);
+    return like(fine, [&](int x, int y, unsigned z) {
+        const float known = fine_range.at(x, y) / (fine_range.at(x, y) + 0.5f * (median_fine_range + 2.0f));
+        const float own =
+            (top.at(x, y) - coarse.at(x, y, z)) / (range.at(x, y) + 4.0f * (median_range + 0.5f));
+        return fine_cost.at(x, y, z) + (t > 0.1f ? t * (1.0f - known) * (1.0f - known) * own : 0.0f);
+    });
+}
+
+Volume nearest_3x3(const Volume &u)
+{
+    return like(u, [&](int x, int y, unsigned) {
+        float least = at(u, x, y);
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++)
+                least = std::min(least, at(u, x + i, y + j));
+        return least;
+    });
+}
+
+Volume nearer_first_guess(const Volume &fine_cost)
+{
+    const Volume boxed = box(fine_cost, 2);
+    const Volume u = make(boxed.width, boxed.height, 1, [&](int x, int y, unsigned) {
+        unsigned best = 0;
+        for (unsigned z = 1; z < boxed.planes; z++)
+            if (boxed.at(x, y, z) < boxed.at(x, y, best))
+                best = z;
+        return static_cast<float>(best);
+    });
+    return nearest_3x3(like(u, [&](int x, int y, unsigned) {
+        std::vector<float> around;
+        for (int k = 0; k < 25; k++)
+            around.push_back(at(u, x + k % 5 - 2, y + k / 5 - 2));
+        return median(around);
+    }));
+}
+
+Colours blend(const Colours &small, const Volume &u, float t)
+{
+    const float s = 0.6f + 0.3f * t;
+    const auto blend_colour = [&](const Volume &colour) {
+        return like(u, [&](int x, int y, unsigned) {
+            float sum = 0.0f, weights = 0.0f;
+            for (unsigned z = 0; z < colour.planes; z++) {
+                const float d = static_cast<float>(z) - u.at(x, y),
+                            weight = std::exp(-d * d / (2.0f * s * s));
+                sum += weight * colour.at(x, y, z);
+                weights += weight;
+            }
+            return sum / weights;
+        });
+    };
+    return {blend_colour(small[0]), blend_colour(small[1]), blend_colour(small[2])};
+}
+
+Colours denoise(const Colours &guide, float sigma, unsigned scale)
+{
+    if (sigma <= 0.3f)
+        return guide;
+    const float range = 4.0f * sigma / static_cast<float>(scale);
+    const auto denoise_colour = [&](const Volume &colour) {
+        return like(colour, [&](int x, int y, unsigned) {
+            float sum = 0.0f, weights = 0.0f;
+            for (int j = -4; j <= 4; j++)
+                for (int i = -4; i <= 4; i++) {
+                    const float e = distance(guide, x, y, guide, x + i, y + j);
+                    const float weight =
+                        i * i + j * j > 16
+                            ? 0.0f
+                            : std::exp(-(i * i + j * j) / 8.0f - e * e / (2.0f * range * range));
+                    sum += weight * at(colour, x + i, y + j);
+                    weights += weight;
+                }
+            return sum / weights;
+        });
+    };
+    return {denoise_colour(guide[0]), denoise_colour(guide[1]), denoise_colour(guide[2])};
+}
+
+} // namespace dff::twin

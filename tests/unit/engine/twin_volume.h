@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/noise_estimate.h"
+#include "test_stack.h"
+
+#include <array>
+
+/* Plain C++ twins of the kernels of method=volume, on pictures without sides. Each takes what the stage
+ * before it gave. */
+namespace dff::twin {
+
+using Noise = NoiseEstimate::Noise;
+using Colours = std::array<Volume, 3>; /* R, G, B */
+
+Volume mean_of_colours(const TestStack &stack); /* DN; luma itself where there is luma */
+Volume average_squares(const Volume &planes, unsigned scale);
+Volume fine_focus(const Volume &luma, const Noise &noise, unsigned scale);
+Volume smooth_along_z(const Volume &focus, float t);
+Volume fine_cost(const Volume &focus, float median_top);
+Volume coarse_focus(const Colours &small);
+Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, float median_fine_range,
+            float median_range, float t);
+
+float median(std::vector<float> values);
+Volume range_of(const Volume &focus);
+Volume top_of(const Volume &focus);
+
+Volume nearer_first_guess(const Volume &fine_cost);
+Volume nearest_3x3(const Volume &u);
+Colours blend(const Colours &small, const Volume &u, float t);
+Colours denoise(const Colours &guide, float sigma, unsigned scale);
+Volume guided_filter(const Volume &cost, const Colours &guide, float t);
+Volume match(const Volume &cost, const Colours &guide, float t);
+Volume decide(const Volume &total);
+Volume mean_over_planes(const Volume &cost);
+Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence);
+Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);
+
+} // namespace dff::twin

@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "twin_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dff::twin {
+
+namespace {
+
+using Place = std::array<int, 2>; /* x, y */
+using Vector3 = std::array<double, 3>;
+
+int clamped(int i, unsigned n)
+{
+    return std::clamp(i, 0, static_cast<int>(n) - 1);
+}
+
+/* Ends repeated: -1 is 0. */
+int reflect(int i, unsigned n)
+{
+    return clamped(i < 0 ? -1 - i : i < static_cast<int>(n) ? i : 2 * static_cast<int>(n) - 1 - i, n);
+}
+
+float difference(const Colours &guide, Place p, Place q)
+{
+    float sum = 0.0f;
+    for (const Volume &colour : guide)
+        sum += std::abs(colour.at(p[0], p[1]) - colour.at(q[0], q[1]));
+    return sum;
+}
+
+/* Cramer's rule for a symmetric matrix. */
+Vector3 solve(const std::array<Vector3, 3> &m, const Vector3 &v)
+{
+    const auto determinant = [](const std::array<Vector3, 3> &a) {
+        return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+               a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+               a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    };
+    Vector3 result;
+    for (size_t column = 0; column < 3; column++) {
+        std::array<Vector3, 3> replaced = m;
+        for (size_t row = 0; row < 3; row++)
+            replaced[row][column] = v[row];
+        result[column] = determinant(replaced) / determinant(m);
+    }
+    return result;
+}
+
+/* Calls work(x, y, weight) over the window of the guided filter, weights summing to 1. */
+template <typename Work> void over_window(const Volume &v, int x, int y, float t, const Work &work)
+{
+    const double rim = t > 0.1f ? t : 0.0, side = 3.0 + 2.0 * rim;
+    for (int j = -2; j <= 2; j++)
+        for (int i = -2; i <= 2; i++) {
+            const double weight =
+                (std::abs(i) == 2 ? rim : 1.0) * (std::abs(j) == 2 ? rim : 1.0) / (side * side);
+            work(reflect(x + i, v.width), reflect(y + j, v.height), weight);
+        }
+}
+
+/* One path's L over the whole picture, added to total. */
+void follow(const Volume &cost, const Colours &guide, Place step, float p1, float p2, Volume &total)
+{
+    Volume path(cost.width, cost.height, cost.planes);
+    const int width = static_cast<int>(cost.width), height = static_cast<int>(cost.height);
+    const int planes = static_cast<int>(cost.planes);
+    for (int row = 0; row < height; row++)
+        for (int column = 0; column < width; column++) {
+            const int y = step[1] < 0 ? height - 1 - row : row, x = step[0] < 0 ? width - 1 - column : column;
+            const int qx = x - step[0], qy = y - step[1];
+            const bool enters = qx < 0 || qx >= width || qy < 0 || qy >= height;
+            const float e = enters ? 0.0f : std::exp(-difference(guide, {x, y}, {qx, qy}) / 15.0f) + 0.01f;
+            float least = std::numeric_limits<float>::infinity();
+            for (int z = 0; z < planes && !enters; z++)
+                least = std::min(least, path.at(qx, qy, z));
+            for (int z = 0; z < planes; z++) {
+                float best = 0.0f;
+                if (!enters) {
+                    best = std::min(path.at(qx, qy, z), least + p2 * e);
+                    if (z > 0)
+                        best = std::min(best, path.at(qx, qy, z - 1) + p1 * e);
+                    if (z + 1 < planes)
+                        best = std::min(best, path.at(qx, qy, z + 1) + p1 * e);
+                    best -= least;
+                }
+                path.at(x, y, z) = cost.at(x, y, z) + best;
+                total.at(x, y, z) += path.at(x, y, z);
+            }
+        }
+}
+
+/* (1 + lambda L) x = f along one line, by Gauss's elimination of the tridiagonal system. */
+std::vector<double> smooth_line(const std::vector<double> &f, const std::vector<double> &affinity,
+                                double lambda)
+{
+    const size_t n = f.size();
+    std::vector<double> diagonal(n, 1.0), x = f;
+    for (size_t i = 1; i < n; i++) {
+        diagonal[i] += lambda * affinity[i];
+        diagonal[i - 1] += lambda * affinity[i];
+    }
+    for (size_t i = 1; i < n; i++) {
+        const double factor = lambda * affinity[i] / diagonal[i - 1];
+        diagonal[i] -= factor * lambda * affinity[i];
+        x[i] += factor * x[i - 1];
+    }
+    x[n - 1] /= diagonal[n - 1];
+    for (size_t i = n - 1; i-- > 0;)
+        x[i] = (x[i] + lambda * affinity[i + 1] * x[i + 1]) / diagonal[i];
+    return x;
+}
+
+void smooth(Volume &picture, const Colours &guide, double lambda, bool along_rows)
+{
+    const unsigned lines = along_rows ? picture.height : picture.width,
+                   n = along_rows ? picture.width : picture.height;
+    for (unsigned line = 0; line < lines; line++) {
+        const auto place = [&](unsigned i) {
+            return along_rows ? Place{static_cast<int>(i), static_cast<int>(line)}
+                              : Place{static_cast<int>(line), static_cast<int>(i)};
+        };
+        std::vector<double> f(n), affinity(n, 0.0);
+        for (unsigned i = 0; i < n; i++) {
+            f[i] = picture.at(place(i)[0], place(i)[1]);
+            if (i > 0)
+                affinity[i] = std::exp(-difference(guide, place(i), place(i - 1)) / 3.0);
+        }
+        const std::vector<double> x = smooth_line(f, affinity, lambda);
+        for (unsigned i = 0; i < n; i++)
+            picture.at(place(i)[0], place(i)[1]) = static_cast<float>(x[i]);
+    }
+}
+
+} // namespace
+
+Volume guided_filter(const Volume &cost, const Colours &guide, float t)
+{
+    Volume result = cost;
+    std::array<Volume, 4> fitted{result, result, result, result};
+    for (unsigned z = 0; z < cost.planes; z++)
+        for (int y = 0; y < static_cast<int>(cost.height); y++)
+            for (int x = 0; x < static_cast<int>(cost.width); x++) {
+                Vector3 mean{}, with_cost{};
+                std::array<Vector3, 3> covariance{};
+                double mean_cost = 0.0;
+                over_window(cost, x, y, t, [&](int i, int j, double weight) {
+                    mean_cost += weight * cost.at(i, j, z);
+                    for (size_t a = 0; a < 3; a++) {
+                        mean[a] += weight * guide[a].at(i, j);
+                        with_cost[a] += weight * guide[a].at(i, j) * cost.at(i, j, z);
+                        for (size_t b = 0; b < 3; b++)
+                            covariance[a][b] += weight * guide[a].at(i, j) * guide[b].at(i, j);
+                    }
+                });
+                for (size_t a = 0; a < 3; a++) {
+                    with_cost[a] -= mean[a] * mean_cost;
+                    for (size_t b = 0; b < 3; b++)
+                        covariance[a][b] += (a == b ? 30.0 : 0.0) - mean[a] * mean[b];
+                }
+                const Vector3 slope = solve(covariance, with_cost);
+                for (size_t a = 0; a < 3; a++) {
+                    fitted[a].at(x, y, z) = static_cast<float>(slope[a]);
+                    mean_cost -= slope[a] * mean[a];
+                }
+                fitted[3].at(x, y, z) = static_cast<float>(mean_cost);
+            }
+    for (unsigned z = 0; z < cost.planes; z++)
+        for (int y = 0; y < static_cast<int>(cost.height); y++)
+            for (int x = 0; x < static_cast<int>(cost.width); x++) {
+                double value = 0.0;
+                over_window(cost, x, y, t, [&](int i, int j, double weight) {
+                    for (size_t a = 0; a < 3; a++)
+                        value += weight * fitted[a].at(i, j, z) * guide[a].at(x, y);
+                    value += weight * fitted[3].at(i, j, z);
+                });
+                result.at(x, y, z) = static_cast<float>(value);
+            }
+    return result;
+}
+
+Volume match(const Volume &cost, const Colours &guide, float t)
+{
+    Volume total(cost.width, cost.height, cost.planes);
+    for (int dy = -1; dy <= 1; dy++)
+        for (int dx = -1; dx <= 1; dx++)
+            if (dx != 0 || dy != 0)
+                follow(cost, guide, {dx, dy}, 0.3f + 0.4f * t, 2.0f, total);
+    return total;
+}
+
+Volume decide(const Volume &total)
+{
+    Volume u(total.width, total.height, 1);
+    const int last = static_cast<int>(total.planes) - 1;
+    for (unsigned y = 0; y < u.height; y++)
+        for (unsigned x = 0; x < u.width; x++) {
+            int best = 0;
+            for (int z = 1; z <= last; z++)
+                if (total.at(x, y, z) < total.at(x, y, best))
+                    best = z;
+            float offset = 0.0f;
+            if (last > 1) {
+                const int middle = std::clamp(best, 1, last - 1);
+                const float before = total.at(x, y, middle - 1), after = total.at(x, y, middle + 1);
+                const float curvature = before - 2.0f * total.at(x, y, middle) + after;
+                if (curvature > 1e-12f)
+                    offset = 0.5f * (before - after) / curvature + static_cast<float>(middle - best);
+            }
+            u.at(x, y) = std::clamp(static_cast<float>(best) + std::clamp(offset, -0.5f, 0.5f), 0.0f,
+                                    static_cast<float>(last));
+        }
+    return u;
+}
+
+Volume mean_over_planes(const Volume &cost)
+{
+    Volume mean(cost.width, cost.height, 1);
+    for (size_t i = 0; i < cost.values.size(); i++)
+        mean.values[i % mean.values.size()] += cost.values[i] / static_cast<float>(cost.planes);
+    for (float &value : mean.values)
+        value = std::clamp(value, 0.0f, 1.0f);
+    return mean;
+}
+
+Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence)
+{
+    Volume weighted = u, weights = u, result = u;
+    for (size_t i = 0; i < u.values.size(); i++) {
+        weights.values[i] = confidence.values[i] * confidence.values[i] + 1e-4f;
+        weighted.values[i] = weights.values[i] * u.values[i];
+    }
+    for (const double lambda : {40.0, 10.0}) /* 1.5 * 100 * 4^(1 - i) / (4^2 - 1) */
+        for (const bool along_rows : {false, true}) {
+            smooth(weighted, guide, lambda, along_rows);
+            smooth(weights, guide, lambda, along_rows);
+        }
+    for (size_t i = 0; i < u.values.size(); i++) {
+        const float own = std::min(confidence.values[i] / high_confidence, 1.0f);
+        result.values[i] = own * u.values[i] + (1.0f - own) * weighted.values[i] / weights.values[i];
+    }
+    return result;
+}
+
+Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale)
+{
+    const Volume nearer = nearest_3x3(u);
+    const float s = 0.6f + 0.3f * t;
+    Volume result(planes[0].width, planes[0].height, 1);
+    for (unsigned y = 0; y < result.height; y++)
+        for (unsigned x = 0; x < result.width; x++) {
+            const float fx = (x + 0.5f) / scale - 0.5f, fy = (y + 0.5f) / scale - 0.5f;
+            const int left = static_cast<int>(std::floor(fx)), top = static_cast<int>(std::floor(fy));
+            const auto low = [&](const Volume &v, int i, int j) {
+                return v.at(reflect(left + i, v.width), reflect(top + j, v.height));
+            };
+            float least = low(u, 0, 0), most = least;
+            for (int k = 0; k < 16; k++) {
+                least = std::min(least, low(u, k % 4 - 1, k / 4 - 1));
+                most = std::max(most, low(u, k % 4 - 1, k / 4 - 1));
+            }
+            const float ax = fx - left, ay = fy - top;
+            if (most - least < 0.5f) {
+                result.at(x, y) = (1 - ay) * ((1 - ax) * low(u, 0, 0) + ax * low(u, 1, 0)) +
+                                  ay * ((1 - ax) * low(u, 0, 1) + ax * low(u, 1, 1));
+                continue;
+            }
+            const float position =
+                0.25f * (low(nearer, 0, 0) + low(nearer, 1, 0) + low(nearer, 0, 1) + low(nearer, 1, 1));
+            Vector3 own{};
+            double own_weights = 0.0;
+            for (unsigned z = 0; z < planes[0].planes; z++) {
+                const float d = static_cast<float>(z) - position;
+                if (std::abs(d) > 2.5f * s)
+                    continue;
+                const double weight = std::exp(-d * d / (2.0f * s * s));
+                own_weights += weight;
+                for (size_t c = 0; c < 3; c++)
+                    own[c] += weight * planes[c].at(x, y, z);
+            }
+            double sum = 0.0, weights = 0.0;
+            for (int k = 0; k < 16; k++) {
+                const int i = k % 4 - 1, j = k / 4 - 1;
+                double difference = 0.0;
+                for (size_t c = 0; c < 3; c++)
+                    difference += std::abs(own[c] / own_weights - low(guide[c], i, j));
+                const double likeness = std::max(1.0 - difference / 60.0, 0.0);
+                const double weight =
+                    likeness * likeness * std::exp(-((ax - i) * (ax - i) + (ay - j) * (ay - j)) / 4.5) + 1e-5;
+                weights += weight;
+                sum += weight * low(u, i, j);
+            }
+            result.at(x, y) = static_cast<float>(sum / weights);
+        }
+    return result;
+}
+
+} // namespace dff::twin
