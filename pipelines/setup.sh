@@ -40,7 +40,10 @@ install_missing() {
     export DEBIAN_FRONTEND=noninteractive
     # shellcheck disable=SC2086  # one word a package
     { apt-get update -q && apt-get install -q -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing; } 2>&1 |
-        awk '/^(E|W|Err):/ { print } /^Setting up/ && ++n % 50 == 0 { print "   " n " packages set up"; fflush() }'
+        awk '/^(E|W|Err):/ || /newly installed/ { print "   " $0 }
+            /^Unpacking/ && ++u % 50 == 0 { print "   " u " packages unpacked" }
+            /^Setting up/ && ++n % 50 == 0 { print "   " n " packages set up" }
+            { fflush() }'
 }
 
 # build FOLDER OPTION...: configures the folder, once, with these Meson options, and compiles.
