@@ -276,9 +276,18 @@ __kernel void advance_rows(__global const float2 *row_dots, __global const float
         steps[step + 1] = now;
 }
 
-/* solution = d x: plane positions; NAN where nothing is known at all. */
-__kernel void finish_rows(ConstCells x, ConstCells d, __global const float2 *row_sums, Cells solution)
+/* solution = d x: plane positions; NAN where nothing is known at all. relative_residual: what is left of the residual,
+ * in parts of the right-hand side; by the residual before the last step, which was measured. */
+__kernel void finish_rows(ConstCells x, ConstCells d, __global const float2 *row_sums, Cells solution,
+                          __global const float *row_norms, __global const Step *last, int step,
+                          __global float *relative_residual)
 {
+    if (get_group_id(0) == 0) {
+        float norm = 0.0f;
+        for (int i = 0; i < ROWS; i++)
+            norm += row_norms[i];
+        *relative_residual = norm > 0.0f ? sqrt(last[step].squared_residual / norm) : 0.0f;
+    }
     const float16 known = sum_of_rows(row_sums).y > 0.0f ? 0.0f : NAN;
     for (int i = first_cell(), end = i + ROW; i < end; i += 16)
         put(solution, i, known + at(d, i) * at(x, i));

@@ -26,6 +26,10 @@ public:
     virtual const cl::Buffer &sparse() const = 0;     /* ushort, 0 where unknown */
     virtual const cl::Buffer &confidence() const = 0; /* uchar: 255 c */
     virtual const cl::Buffer &motion() const = 0;     /* uchar: 255 where it moved */
+
+    /* float: the residual the solver left, in parts of the right-hand side; nullptr where that is not known.
+     */
+    virtual const cl::Buffer *residual() const { return nullptr; }
 };
 
 } // namespace dff

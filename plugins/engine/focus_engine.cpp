@@ -56,6 +56,7 @@ void FocusEngine::set_encoder(const DepthEncoder &encoder)
 bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
 {
     cl_ushort first = DepthScale::no_value;
+    cl_float residual = 0.0f;
     translate_errors(*device_, [&] {
         stack_.assign(stack);
         method_->run(stack_, coder_,
@@ -70,8 +71,12 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
         if (outputs.motion.pixels)
             read(method_->motion(), sizeof(cl_uchar), outputs.motion);
         queue_.commands().enqueueReadBuffer(method_->depth(), CL_FALSE, 0, sizeof first, &first);
+        if (method_->residual())
+            queue_.commands().enqueueReadBuffer(*method_->residual(), CL_FALSE, 0, sizeof residual,
+                                                &residual);
         times_ = queue_.finish();
     });
+    residual_ = method_->residual() ? std::optional(residual) : std::nullopt;
     return first != DepthScale::no_value;
 }
 

@@ -5,6 +5,8 @@
 #include "engine/depth_method.h"
 #include "engine/depth_parameters.h"
 
+#include <optional>
+
 namespace dff {
 
 /* A picture in host memory that an engine writes. Rows of `width` pixels follow each other after `stride`
@@ -39,6 +41,10 @@ public:
     /* Of the last stack. */
     const StageTimes &times() const { return times_; }
 
+    /* What the solver left of the last stack's residual, in parts of the right-hand side, where the method
+     * tells. */
+    std::optional<float> residual() const { return residual_; }
+
 private:
     void read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output);
 
@@ -49,6 +55,7 @@ private:
     DepthCoder coder_;
     std::unique_ptr<DepthMethod> method_;
     StageTimes times_;
+    std::optional<float> residual_;
 };
 
 } // namespace dff

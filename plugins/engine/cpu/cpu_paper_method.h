@@ -22,6 +22,7 @@ public:
     const cl::Buffer &sparse() const override { return sparse_depth_; }
     const cl::Buffer &confidence() const override { return focus_.confidence(); }
     const cl::Buffer &motion() const override { return statistics_.moved(); }
+    const cl::Buffer *residual() const override { return &grid_.residual_norm(); }
 
 private:
     CommandQueue &queue_;

@@ -79,6 +79,7 @@ void LumaGrid::allocate()
     row_sums_ = queue_.allocate(rows_ * sizeof(cl_float2));
     row_norms_ = queue_.allocate(rows_ * sizeof(cl_float));
     row_dots_ = queue_.allocate(rows_ * sizeof(cl_float2));
+    residual_norm_ = queue_.allocate(sizeof(cl_float));
     steps_ = queue_.allocate((parameters_.iterations + 1) * sizeof(Step));
     queue_.commands().enqueueFillBuffer(steps_, cl_uchar{0}, 0, (parameters_.iterations + 1) * sizeof(Step));
 }
@@ -127,7 +128,8 @@ void LumaGrid::iterate()
         queue_.run_groups(advance_, {rows_}, row_dots_, row_norms_, steps_, step, residual_,
                           product_of_residual_, direction_, product_, x_, residual_tolerance);
     }
-    queue_.run_groups(finish_, {rows_}, x_, scale_of_cell_, row_sums_, solution_);
+    queue_.run_groups(finish_, {rows_}, x_, scale_of_cell_, row_sums_, solution_, row_norms_, steps_,
+                      static_cast<cl_int>(parameters_.iterations), residual_norm_);
 }
 
 } // namespace dff

@@ -20,6 +20,9 @@ public:
     /* Plane position of each cell; NAN everywhere if nothing is known of any pixel. */
     const cl::Buffer &solution() const { return solution_; }
 
+    /* float: the residual the solver left, in parts of the right-hand side. */
+    const cl::Buffer &residual_norm() const { return residual_norm_; }
+
     /* Options for kernels that read the solution: COLUMN, ROW, COLUMNS, ROWS of luma_grid.cl. */
     std::string build_options() const;
 
@@ -40,7 +43,7 @@ private:
         choose_start_, residual_product_, advance_, finish_;
     cl::Buffer mass_, weight_, target_, n_, next_n_, coefficient_, scale_of_cell_, right_, x_, residual_,
         product_of_residual_, direction_, product_, solution_;
-    cl::Buffer row_sums_, row_norms_, row_dots_, steps_;
+    cl::Buffer row_sums_, row_norms_, row_dots_, steps_, residual_norm_;
 };
 
 } // namespace dff

@@ -84,6 +84,24 @@ TEST(FocusEngine, the_encoder_gives_the_unit)
         ASSERT_EQ(millimetre.depth[i], encoder.encode(DepthEncoder::index(6).decode(index.depth[i]).value()));
 }
 
+TEST(FocusEngine, more_iterations_leave_less_residual)
+{
+    const TestStack stack({PixelFormat::Gray8, 160, 128, 4});
+    std::vector<float> residuals;
+    for (const unsigned iterations : {2u, 25u}) {
+        DepthParameters parameters;
+        parameters.method = Method::Paper;
+        parameters.grid.iterations = iterations;
+        FocusEngine engine(device_with(KernelStyle::Tiles), stack.shape, parameters);
+        Maps maps(stack.shape);
+        engine.compute(stack.view(), maps.outputs);
+        residuals.push_back(engine.residual().value());
+    }
+    EXPECT_LT(residuals[0], 1.0f);
+    EXPECT_GT(residuals[0], 4.0f * residuals[1]);
+    EXPECT_GE(residuals[1], 0.0f);
+}
+
 TEST(FocusEngine, every_stage_has_a_time)
 {
     const TestStack stack({PixelFormat::Gray8, 64, 64, 3});
