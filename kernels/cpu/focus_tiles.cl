@@ -21,6 +21,7 @@
 #define COARSE_STRIDE (TILE_WIDTH / 2 + 32)
 #define SPREAD_STRIDE (TILE_WIDTH + 48)
 #define COARSE_ROWS (TILE_HEIGHT / 2 + 4)
+#define SPREAD_LEVEL (COARSE_ROWS * SPREAD_STRIDE) /* samples */
 
 /* The picture's part that a tile covers. */
 typedef struct {
@@ -108,6 +109,14 @@ inline void downsample(const uchar *luma, Tile tile, ushort *sums, int level)
 /* Keeps UNITS^2 times the coarse gradient within 16 bits. */
 #define GRADIENT_SHIFT(level) ((level) == 4 ? 5 : 1)
 
+inline ushort16 interleave(ushort8 a, ushort8 b)
+{
+    ushort16 v;
+    v.even = a;
+    v.odd = b;
+    return v;
+}
+
 /* One row of coarse gradients spread to the fine columns, in 1/UNITS. */
 inline void spread_row(const ushort *gradient, ushort *fine, int columns, int level)
 {
@@ -117,20 +126,25 @@ inline void spread_row(const ushort *gradient, ushort *fine, int columns, int le
         lanes16 *out = (lanes16 *)(fine + c * level);
         if (level == 2) {
             const ushort16 a = here * (ushort)3 + before, b = here * (ushort)3 + after;
-            out[0] = (ushort16)(a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7);
-            out[1] = (ushort16)(a.s8, b.s8, a.s9, b.s9, a.sa, b.sa, a.sb, b.sb, a.sc, b.sc, a.sd, b.sd, a.se, b.se, a.sf, b.sf);
+            out[0] = interleave(a.lo, b.lo);
+            out[1] = interleave(a.hi, b.hi);
         } else if (level == 3) {
             const ushort16 a = here * (ushort)2 + before, b = here * (ushort)3, d = here * (ushort)2 + after;
-            out[0] = (ushort16)(a.s0, b.s0, d.s0, a.s1, b.s1, d.s1, a.s2, b.s2, d.s2, a.s3, b.s3, d.s3, a.s4, b.s4, d.s4, a.s5);
-            out[1] = (ushort16)(b.s5, d.s5, a.s6, b.s6, d.s6, a.s7, b.s7, d.s7, a.s8, b.s8, d.s8, a.s9, b.s9, d.s9, a.sa, b.sa);
-            out[2] = (ushort16)(d.sa, a.sb, b.sb, d.sb, a.sc, b.sc, d.sc, a.sd, b.sd, d.sd, a.se, b.se, d.se, a.sf, b.sf, d.sf);
+            out[0] = (ushort16)(a.s0, b.s0, d.s0, a.s1, b.s1, d.s1, a.s2, b.s2, d.s2, a.s3, b.s3, d.s3, a.s4, b.s4,
+                                d.s4, a.s5);
+            out[1] = (ushort16)(b.s5, d.s5, a.s6, b.s6, d.s6, a.s7, b.s7, d.s7, a.s8, b.s8, d.s8, a.s9, b.s9, d.s9,
+                                a.sa, b.sa);
+            out[2] = (ushort16)(d.sa, a.sb, b.sb, d.sb, a.sc, b.sc, d.sc, a.sd, b.sd, d.sd, a.se, b.se, d.se, a.sf,
+                                b.sf, d.sf);
         } else {
             const ushort16 a = here * (ushort)5 + before * (ushort)3, b = here * (ushort)7 + before;
             const ushort16 d = here * (ushort)7 + after, e = here * (ushort)5 + after * (ushort)3;
-            out[0] = (ushort16)(a.s0, b.s0, d.s0, e.s0, a.s1, b.s1, d.s1, e.s1, a.s2, b.s2, d.s2, e.s2, a.s3, b.s3, d.s3, e.s3);
-            out[1] = (ushort16)(a.s4, b.s4, d.s4, e.s4, a.s5, b.s5, d.s5, e.s5, a.s6, b.s6, d.s6, e.s6, a.s7, b.s7, d.s7, e.s7);
-            out[2] = (ushort16)(a.s8, b.s8, d.s8, e.s8, a.s9, b.s9, d.s9, e.s9, a.sa, b.sa, d.sa, e.sa, a.sb, b.sb, d.sb, e.sb);
-            out[3] = (ushort16)(a.sc, b.sc, d.sc, e.sc, a.sd, b.sd, d.sd, e.sd, a.se, b.se, d.se, e.se, a.sf, b.sf, d.sf, e.sf);
+            const ushort16 ad = interleave(a.lo, d.lo), be = interleave(b.lo, e.lo);
+            const ushort16 ad_hi = interleave(a.hi, d.hi), be_hi = interleave(b.hi, e.hi);
+            out[0] = interleave(ad.lo, be.lo);
+            out[1] = interleave(ad.hi, be.hi);
+            out[2] = interleave(ad_hi.lo, be_hi.lo);
+            out[3] = interleave(ad_hi.hi, be_hi.hi);
         }
     }
 }
@@ -180,14 +194,15 @@ inline float16 upsample(const ushort *spread, const Rows *rows)
 
 /* What one unit of the integer product is worth in P. */
 #define FINE_UNIT (1.0f / 8)
-#define COARSE_UNIT(level)                                                                                              \
+#define COARSE_UNIT(level) \
     ((float)(1 << GRADIENT_SHIFT(level)) / (8 * (level) * (level) * UNITS(level) * UNITS(level)))
 
 /* The lowest bits of the best product so far hold LAST_PLANE - z. */
 #define LAST_PLANE 63
 
 /* Takes plane z of a tile into the best product and the sum over the planes. */
-inline void measure_plane(const uchar *luma, Tile tile, const ushort *spread, const Rows (*rows)[TILE_HEIGHT], int z, int *best, float *sum)
+inline void measure_plane(const uchar *luma, Tile tile, const ushort *spread, const Rows (*rows)[TILE_HEIGHT], int z,
+                          int *best, float *sum)
 {
     for (int x = 0; x < tile.columns; x += 16) {
         short16 dx[2], smooth[2]; /* derivative along x and smoothing of the two rows before */
@@ -203,9 +218,10 @@ inline void measure_plane(const uchar *luma, Tile tile, const ushort *spread, co
                     magnitude(dx[0] + dx_below + (dx[1] << 1), smooth_below - smooth[0]));
                 __attribute__((opencl_unroll_hint))
                 for (int level = 2; level <= LEVELS; level++)
-                    product *= upsample(spread + (level - 2) * COARSE_ROWS * SPREAD_STRIDE + x, &rows[level - 2][y - 1]);
+                    product *= upsample(spread + (level - 2) * SPREAD_LEVEL + x, &rows[level - 2][y - 1]);
                 *(flanes *)(sum + i) += product;
-                *(ilanes *)(best + i) = max(*(ilanes *)(best + i), (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z));
+                const int16 candidate = (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z);
+                *(ilanes *)(best + i) = max(*(ilanes *)(best + i), candidate);
             }
             dx[0] = dx[1];
             dx[1] = dx_below;
@@ -243,7 +259,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
 {
     uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
     ushort sums[COARSE_ROWS * COARSE_STRIDE];
-    ushort spread[(LEVELS > 1 ? LEVELS - 1 : 1) * COARSE_ROWS * SPREAD_STRIDE];
+    ushort spread[(LEVELS > 1 ? LEVELS - 1 : 1) * SPREAD_LEVEL];
     int best[TILE_HEIGHT * TILE_WIDTH];
     float sum[TILE_HEIGHT * TILE_WIDTH];
 
@@ -266,7 +282,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
         __attribute__((opencl_unroll_hint))
         for (int level = 2; level <= LEVELS; level++) {
             downsample(luma, tile, sums, level);
-            coarse_gradient(sums, tile, spread + (level - 2) * COARSE_ROWS * SPREAD_STRIDE, level);
+            coarse_gradient(sums, tile, spread + (level - 2) * SPREAD_LEVEL, level);
         }
         measure_plane(luma, tile, spread, rows, z, best, sum);
     }

@@ -74,8 +74,8 @@ inline int first_cell(void)
 
 /* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
  * row_sums: (target, weight) of the row. */
-__kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight, Cells target,
-                         Cells n, __global float2 *row_sums, int width, int height, int sigma_xy, int sigma_luma)
+__kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight,
+                         Cells target, Cells n, __global float2 *row_sums, int width, int height, int sigma_xy, int sigma_luma)
 {
     const int row = (int)get_group_id(0), top = row * sigma_xy, bottom = min(top + sigma_xy, height);
     uchar step_of[256];
@@ -232,8 +232,8 @@ typedef struct {
 } Step;
 
 /* w = A' r; row_dots: (r . r, w . r) in the row. */
-__kernel void residual_product(ConstCells e, ConstCells r, Cells w, __global float2 *row_dots, __global const Step *steps,
-                               int step)
+__kernel void residual_product(ConstCells e, ConstCells r, Cells w, __global float2 *row_dots,
+                               __global const Step *steps, int step)
 {
     if (steps[step].done)
         return;
