@@ -36,12 +36,11 @@ check() {
     rm -f "$log"
 }
 
-# add_count TEXT: adds up every 'N passed, N failed[, N skipped]' that stands alone on a line.
+# add_count LOG: adds the last 'N passed, N failed[, N skipped]' that stands alone on a line.
 add_count() {
-    local count
-    count=$(sed -nE 's/^([0-9]+) passed, ([0-9]+) failed(, ([0-9]+) skipped)?$/\1 \2 \4/p' <<<"$1" | tail -n 1)
+    local count p f s
+    count=$(sed -nE 's/^([0-9]+) passed, ([0-9]+) failed(, ([0-9]+) skipped)?$/\1 \2 \4/p' "$1" | tail -n 1)
     [ -n "$count" ] || return 1
-    local p f s
     read -r p f s <<<"$count"
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + ${s:-0}))
 }
@@ -67,6 +66,9 @@ tidy() {
     return $status
 }
 
+say "Checking that every package is installed"
+install_missing "${run_packages[@]}" "${build_packages[@]}" "${test_packages[@]}" || { failed=1; finish; }
+
 say "Building in build-release"
 check "release build, without a warning" build build-release --buildtype=release -Dwerror=true -Dauto_features=enabled
 say "Testing the release build"
@@ -90,8 +92,8 @@ check "evaluation" env BUILD=build-release tests/eval/run.sh --self-check
 
 if [ -f fpga/test/run.sh ]; then
     say "Testing the FPGA design"
-    fpga_output=$(bash fpga/test/run.sh 2>&1 | tee /dev/stderr)
-    add_count "$fpga_output" || failed=$((failed + 1))
+    bash fpga/test/run.sh 2>&1 | tee build-release/fpga.log
+    add_count build-release/fpga.log || failed=$((failed + 1))
 fi
 
 finish
