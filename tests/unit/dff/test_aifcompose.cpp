@@ -142,6 +142,29 @@ TEST(AifCompose, a_stack_without_usable_depth_becomes_the_mean_of_its_planes)
         ASSERT_EQ(pixel, 120);
 }
 
+TEST(AifCompose, one_stack_in_four_impossible_to_compute_does_not_hold_up_the_others)
+{
+    std::vector<guint8> stacks;
+    for (unsigned k = 0; k < 16; k++) {
+        const std::vector<guint8> stack = dff::gray_stack(64, 64, 4, k % 4 == 1 ? 99 : k % 4);
+        stacks.insert(stacks.end(), stack.begin(), stack.end());
+    }
+    TestPipeline pipeline(
+        "filesrc location=" + dff::write_file("one_in_four", stacks) +
+        " blocksize=16384 ! video/x-focal-stack,format=GRAY8,width=64,height=64,planes=4,framerate=10/1 "
+        "! tee name=s  s. ! queue ! dffdepth ! tee name=d  d. ! queue ! c.depth  s. ! queue ! c.stack  "
+        "aifcompose name=c ! appsink name=out sync=false  d. ! queue ! appsink name=depth sync=false");
+    pipeline.play();
+    const std::vector<GstSample *> pictures = pipeline.pull_all("out"), depths = pipeline.pull_all("depth");
+    EXPECT_EQ(pictures.size(), 16u);
+    ASSERT_EQ(depths.size(), 16u);
+    for (size_t k = 0; k < depths.size(); k++)
+        EXPECT_EQ(GST_BUFFER_FLAG_IS_SET(gst_sample_get_buffer(depths[k]), GST_BUFFER_FLAG_GAP), k % 4 == 1)
+            << k;
+    unref_all(pictures);
+    unref_all(depths);
+}
+
 TEST(AifCompose, soft_blend_has_less_noise)
 {
     const std::string noisy = "lenssweeptestsrc num-buffers=12 scene=slant blur-step=0.1 noise=strong seed=3 "

@@ -83,9 +83,10 @@ TEST(DffDepth, every_stack_gives_one_depth_even_where_nothing_can_be_told)
         stacks.insert(stacks.end(), stack.begin(), stack.end());
     }
     const std::string file = write_file("stacks", stacks);
-    TestPipeline pipeline("filesrc location=" + file +
-                          " blocksize=16384 ! video/x-focal-stack,format=GRAY8,width=64,"
-                          "height=64,planes=4,framerate=10/1 ! dffdepth name=d ! appsink name=out sync=false");
+    TestPipeline pipeline(
+        "filesrc location=" + file +
+        " blocksize=16384 ! video/x-focal-stack,format=GRAY8,width=64,"
+        "height=64,planes=4,framerate=10/1 ! dffdepth name=d ! appsink name=out sync=false");
     pipeline.play();
     const std::vector<GstSample *> samples = pipeline.pull_all("out");
     ASSERT_EQ(samples.size(), 8u);

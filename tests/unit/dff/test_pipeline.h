@@ -29,6 +29,7 @@ public:
     TestPipeline &operator=(const TestPipeline &) = delete;
 
     GstElement *element(const char *name) const;
+    void stop() { gst_element_set_state(pipeline_, GST_STATE_NULL); }
     void play() { gst_element_set_state(pipeline_, GST_STATE_PLAYING); }
 
     /* The next sample of an appsink, to be unreffed; nullptr at its end or after 30 s. */
