@@ -35,6 +35,7 @@ public:
 
     /* Of the last stack; empty before the first. */
     StageTimes times() const { return engine_ ? engine_->times() : StageTimes(); }
+    std::optional<float> residual() const { return engine_ ? engine_->residual() : std::nullopt; }
 
 private:
     std::shared_ptr<Device> device_;
