@@ -47,6 +47,7 @@ struct Statistics {
     guint64 without_depth = 0;
     GstClockTime compute_time = 0; /* of the last stack */
     dff::StageTimes stages;
+    std::optional<float> residual; /* what the solver left, in parts of the right-hand side */
 };
 
 /* What dffdepth knows between two buffers. */
@@ -130,6 +131,7 @@ static void account(GstDffDepth *self, GstClockTime compute_time, bool known)
         state.statistics.without_depth += !known;
         state.statistics.compute_time = compute_time;
         state.statistics.stages = state.depth.times();
+        state.statistics.residual = state.depth.residual();
         slower = compute_time > state.latency + state.latency / 4 + GST_MSECOND;
         if (slower)
             state.latency = compute_time;
@@ -377,6 +379,8 @@ static GstStructure *make_stats(State &state)
     GstStructure *stats = gst_structure_new(
         "dffdepth-stats", "stacks", G_TYPE_UINT64, s.stacks, "without-depth", G_TYPE_UINT64, s.without_depth,
         "compute-ms", G_TYPE_DOUBLE, static_cast<gdouble>(s.compute_time) / 1e6, nullptr);
+    if (s.residual)
+        gst_structure_set(stats, "residual", G_TYPE_DOUBLE, static_cast<gdouble>(*s.residual), nullptr);
     for (const auto &[stage, milliseconds] : s.stages)
         gst_structure_set(stats, (stage + "-ms").c_str(), G_TYPE_DOUBLE, milliseconds, nullptr);
     return stats;
@@ -437,8 +441,8 @@ static void gst_dff_depth_class_init(GstDffDepthClass *klass)
         object_class, property_stats,
         g_param_spec_boxed(
             "stats", "Stats",
-            "Stacks so far, those without any depth, and milliseconds the last one took, whole and for "
-            "each stage",
+            "Stacks so far, those without any depth, milliseconds the last one took, whole and for each "
+            "stage, and the part of its residual that the solver left",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
     for (GstStaticPadTemplate *pad_template :
