@@ -7,6 +7,7 @@
  *
  * One component at a time; subsampled chroma (subsampling 2) uses the mean position of its pixels that have one.
  */
+#include "noise_type.cl"
 
 inline float position_of(__global const ushort *depth, __global const float *positions, int depth_stride, int x, int y,
                          int width, int height, int subsampling)
@@ -57,12 +58,13 @@ inline float soft_sample(__global const uchar *stack, __global const ulong2 *row
     return sum / weights;
 }
 
-/* Writes the samples of one component, whose rows the table has from `first_row` on; `channels` interleaved samples
+/* The soft mean where `noise` is given and says that there is noise: in silence it would only lose sharpness.
+ * Writes the samples of one component, whose rows the table has from `first_row` on; `channels` interleaved samples
  * share a depth pixel. */
 __kernel void compose(__global const uchar *stack, __global const ulong2 *table, int first_row,
                       __global const ushort *depth, __global const float *positions, __global uchar *picture,
                       ulong2 picture_rows, int2 component_size, int channels, int subsampling, int2 depth_size,
-                      int depth_stride, int planes, int soft)
+                      int depth_stride, int planes, __global const Noise *noise)
 {
     __global const ulong2 *rows = table + first_row;
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -72,7 +74,7 @@ __kernel void compose(__global const uchar *stack, __global const ulong2 *table,
     float value;
     if (u < 0.0f)
         value = mean_sample(stack, rows, x, y, planes);
-    else if (soft)
+    else if (noise && noise->t > 0.5f)
         value = soft_sample(stack, rows, x, y, u, planes);
     else
         value = linear_sample(stack, rows, x, y, u, planes);

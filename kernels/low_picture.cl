@@ -8,6 +8,8 @@
  * the width, mirror_sides replaces. A volume is `planes` such pictures one after the other. One work-item takes a row
  * or a strip of rows: this is what vectorises on a CPU.
  */
+#include "noise_type.cl"
+
 #define SIDE 16
 
 typedef float8 float8_anywhere __attribute__((aligned(4)));
@@ -31,15 +33,6 @@ inline int reflect(int i, int n)
     return clamp(i, 0, n - 1);
 }
 
-/* What a stack's noise decides, computed on the device by noise.cl: see NoiseEstimate. */
-typedef struct {
-    float sigma; /* DN, the least over the planes */
-    float t;     /* sigma^2 / (sigma^2 + 1): 0 clean .. 1 noisy; constants slide with it */
-    int taps[4]; /* of the pre-blur, in 1/64: centre and three to each side; taps[0] = 64 is none */
-} Noise;
-
-/* Up to this t what is done against noise would change nothing and is left out. */
-#define QUIET 0.1f
 
 /* A stack whose focus measure differs less than this over the planes, in DN, at every cell tells no depth. */
 #define LEAST_EVIDENCE 0.01f

@@ -4,6 +4,7 @@
  * The all-in-focus picture of aif.cl for CPUs, samples of 8 bits, 16 at once. What differs: positions are counted in
  * 1/256 plane, which moves a sample by at most 1/512 of what it changes from one plane to the next.
  */
+#include "../noise_type.cl"
 #define UNIT 256 /* positions a plane */
 #define NO_POSITION 65535
 
@@ -153,8 +154,10 @@ inline uchar16 soft_samples(const Source *source, int x, int y, ushort16 positio
 __kernel void compose_rows(__global const uchar *stack, __global const ulong2 *table, int first_row,
                            __global const ushort *depth, __global const ushort *positions, float scale,
                            __global uchar *picture, ulong2 picture_rows, int component_width, int channels,
-                           int subsampling, int2 depth_size, int depth_stride, int planes, int soft)
+                           int subsampling, int2 depth_size, int depth_stride, int planes,
+                           __global const Noise *noise)
 {
+    const int soft = noise && noise->t > 0.5f;
     const int y = (int)get_group_id(0), pixels = component_width / channels;
     const Source source = {stack, table + first_row, planes};
     __global const ushort *above = depth + (ulong)(y * subsampling) * depth_stride;

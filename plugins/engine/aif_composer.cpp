@@ -24,12 +24,17 @@ AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
       stack_(queue_, shape),
       in_tiles_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16),
+      noise_(queue_, shape, 2), nearest_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
+      softened_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
       positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
       encoder_(DepthEncoder::index(shape.planes))
 {
     const char *sample = shape.format == PixelFormat::Gray16 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
     compose_ = in_tiles_ ? Program(*device_, "aif_rows").kernel("compose_rows")
                          : Program(*device_, "aif", sample).kernel("compose");
+    const Program softening(*device_, "soften_depth");
+    nearest_pixel_ = softening.kernel("nearest_pixel");
+    mean_pixel_ = softening.kernel("mean_pixel");
     set_encoder(encoder_);
 }
 
@@ -80,25 +85,38 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
             {device_->context(), CL_MEM_READ_ONLY | placement, depth.memory.size(), depth_memory},
             {device_->context(), CL_MEM_READ_WRITE | placement, picture.size(), picture.data()},
             depth.stride / sizeof(cl_ushort)};
+        const Pictures softened{softened_, pictures.output, shape_.width};
 
         stack_.assign(stack);
         if (blend == Blend::Sharp) {
             if (!sharp_)
                 sharp_.emplace(queue_, shape_, encoder_);
             sharp_->measure(stack_);
+        } else {
+            soften(pictures);
         }
+        if (blend == Blend::Soft)
+            noise_.run(stack_);
         queue_.begin_stage("compose");
         for (size_t c = 0; c < components_.size(); c++)
             if (blend == Blend::Sharp)
                 sharp_->compose(stack_, c, pictures.depth, pictures.depth_stride, pictures.output, layout[c]);
             else if (in_tiles_)
-                compose_rows(pictures, c, layout[c], blend);
+                compose_rows(softened, c, layout[c], blend);
             else
-                compose_pixels(pictures, c, layout[c], blend);
+                compose_pixels(softened, c, layout[c], blend);
         if (!device_->is_cpu())
             queue_.commands().enqueueReadBuffer(pictures.output, CL_FALSE, 0, picture.size(), picture.data());
         times_ = queue_.finish();
     });
+}
+
+void AifComposer::soften(const Pictures &pictures)
+{
+    const auto width = static_cast<cl_int>(shape_.width), stride = static_cast<cl_int>(pictures.depth_stride);
+    queue_.begin_stage("soften-depth");
+    queue_.run(nearest_pixel_, {1, shape_.height}, pictures.depth, nearest_, width, stride);
+    queue_.run(mean_pixel_, {1, shape_.height}, pictures.depth, nearest_, softened_, width, stride);
 }
 
 void AifComposer::compose_pixels(const Pictures &pictures, size_t component, const RowLayout &rows,
@@ -111,7 +129,7 @@ void AifComposer::compose_pixels(const Pictures &pictures, size_t component, con
                cl_ulong2{{rows.offset, rows.stride}}, component_size, static_cast<cl_int>(c.channels),
                static_cast<cl_int>(c.subsampling), size_of(shape_),
                static_cast<cl_int>(pictures.depth_stride), static_cast<cl_int>(shape_.planes),
-               static_cast<cl_int>(blend == Blend::Soft));
+               blend == Blend::Soft ? noise_.noise() : cl::Buffer());
 }
 
 void AifComposer::compose_rows(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend)
@@ -122,7 +140,7 @@ void AifComposer::compose_rows(const Pictures &pictures, size_t component, const
         pictures.depth, positions_, position_scale_, pictures.output, cl_ulong2{{rows.offset, rows.stride}},
         static_cast<cl_int>(c.width), static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling),
         size_of(shape_), static_cast<cl_int>(pictures.depth_stride), static_cast<cl_int>(shape_.planes),
-        static_cast<cl_int>(blend == Blend::Soft));
+        blend == Blend::Soft ? noise_.noise() : cl::Buffer());
 }
 
 } // namespace dff

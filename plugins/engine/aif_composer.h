@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/focus_engine.h"
+#include "engine/noise_estimate.h"
 #include "engine/sharp_blend.h"
 
 #include <optional>
@@ -15,7 +16,7 @@ class AifComposer {
 public:
     enum class Blend {
         Linear, /* between the two planes around the depth */
-        Soft,   /* Gaussian over the neighbouring planes: less noise */
+        Soft,   /* in noise a Gaussian over the neighbouring planes, which averages it; else as Linear */
         Sharp,  /* the sharper ones of the planes around the depth: forgives planes far apart */
     };
 
@@ -31,7 +32,8 @@ public:
         size_t stride;
     };
 
-    /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. Pixels without
+    /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. Linear and
+     * Soft take the depth softened (kernels/soften_depth.cl), since a step in it would show. Pixels without
      * a depth become the mean of all planes. Throws EngineError. */
     void compose(const StackView &stack, const DepthView &depth, Blend blend, std::span<std::byte> picture,
                  std::span<const RowLayout> layout);
@@ -48,6 +50,7 @@ private:
 
     void write_positions(const DepthEncoder &encoder);
     void write_fixed_positions(const DepthEncoder &encoder);
+    void soften(const Pictures &pictures);
     void compose_pixels(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
     void compose_rows(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
 
@@ -57,7 +60,9 @@ private:
     CommandQueue queue_;
     StackBuffer stack_;
     bool in_tiles_; /* 16 samples of 8 bits at once, on a CPU */
-    cl::Kernel compose_;
+    NoiseEstimate noise_;
+    cl::Kernel nearest_pixel_, mean_pixel_, compose_;
+    cl::Buffer nearest_, softened_;
     cl::Buffer positions_;
     float position_scale_ =
         0.0f; /* of aif_rows.cl: positions a depth pixel, 0 where they must be looked up */

@@ -21,6 +21,35 @@ std::vector<uint16_t> test_depth(const StackShape &shape)
     return depth;
 }
 
+/* The twin of soften_depth.cl. */
+std::vector<uint16_t> softened(const std::vector<uint16_t> &depth, const StackShape &shape)
+{
+    const int width = static_cast<int>(shape.width), height = static_cast<int>(shape.height);
+    const auto for_each_around = [&](int x, int y, const auto &work) {
+        for (int j = -1; j <= 1; j++)
+            for (int i = x == 0 || x == width - 1 ? 0 : -1; i <= (x == 0 || x == width - 1 ? 0 : 1); i++)
+                work((x == 0 || x == width - 1 ? y : std::clamp(y + j, 0, height - 1)) * width + x + i);
+    };
+    std::vector<uint16_t> nearest, result;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            uint16_t least = 65535;
+            for_each_around(x, y, [&](int i) { least = std::min<uint16_t>(least, depth[i] - 1); });
+            nearest.push_back(least);
+        }
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint16_t own = nearest[y * width + x];
+            double sum = 0.0, count = 0.0;
+            for_each_around(x, y, [&](int i) {
+                sum += nearest[i] == 65535 ? own : nearest[i];
+                count++;
+            });
+            result.push_back(depth[y * width + x] == 0 ? 0 : static_cast<uint16_t>(1 + std::lround(sum / count)));
+        }
+    return result;
+}
+
 /* The twin of aif.cl's position_of. */
 double position_of(const std::vector<uint16_t> &depth, const StackShape &shape, const Component &c,
                    unsigned x, unsigned y)
@@ -64,6 +93,7 @@ TEST_P(AifFormats, agrees_with_its_twin)
     const auto [format, blend, style] = GetParam();
     const TestStack stack({format, 67, 65, 7});
     const std::vector<uint16_t> depth = test_depth(stack.shape);
+    const std::vector<uint16_t> taken_at = softened(depth, stack.shape);
     const std::vector<RowLayout> layout = packed_layout({format, 67, 65, 1});
     std::vector<std::byte> picture(stack.memory.size() / 7);
     AifComposer composer(device_with(style), stack.shape);
@@ -74,7 +104,7 @@ TEST_P(AifFormats, agrees_with_its_twin)
         for (unsigned y = 0; y < components[c].height; y++)
             for (unsigned x = 0; x < components[c].width; x++) {
                 const double u =
-                    position_of(depth, stack.shape, components[c], x / components[c].channels, y);
+                    position_of(taken_at, stack.shape, components[c], x / components[c].channels, y);
                 const auto value = [&](unsigned z) -> double {
                     if (format == PixelFormat::Gray16)
                         return stack.sample(c, 2 * x, y, z) + 256.0 * stack.sample(c, 2 * x + 1, y, z);
