@@ -38,8 +38,8 @@ static GType gst_aif_blend_get_type()
          "linear"},
         {static_cast<int>(dff::AifComposer::Blend::Sharp),
          "The sharper ones of the planes around the depth: for planes that lie far apart", "sharp"},
-        {static_cast<int>(dff::AifComposer::Blend::Soft), "Gaussian over the neighbouring planes: less noise",
-         "soft"},
+        {static_cast<int>(dff::AifComposer::Blend::Soft),
+         "As linear; in noise a Gaussian over the neighbouring planes, which averages it", "soft"},
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstAifBlend", values);
@@ -53,7 +53,7 @@ enum Property : guint { PropertyBlend = 1, PropertyDevice, PropertyStats };
 struct State {
     /* Guards the properties and statistics; nothing else is locked under it but the element's own lock. */
     std::mutex mutex;
-    dff::AifComposer::Blend blend = dff::AifComposer::Blend::Linear;
+    dff::AifComposer::Blend blend = dff::AifComposer::Blend::Soft;
     std::string device_wish;
     guint64 pictures = 0;
     guint64 without_depth = 0;
@@ -337,7 +337,7 @@ static void gst_aif_compose_class_init(GstAifComposeClass *klass)
     g_object_class_install_property(
         object_class, PropertyBlend,
         g_param_spec_enum("blend", "Blend", "How the planes around the depth are mixed", GST_TYPE_AIF_BLEND,
-                          static_cast<int>(dff::AifComposer::Blend::Linear),
+                          static_cast<int>(dff::AifComposer::Blend::Soft),
                           static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_PLAYING)));
     g_object_class_install_property(
         object_class, PropertyDevice,

@@ -10,6 +10,8 @@ namespace property {
 enum : guint {
     Unit = 1,
     Device,
+    Method,
+    Scale,
     Levels,
     Tolerance,
     MotionMask,
@@ -28,6 +30,21 @@ constexpr auto playing =
     static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
 constexpr auto ready =
     static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
+
+#define GST_TYPE_DEPTH_METHOD (gst_depth_method_get_type())
+
+GType gst_depth_method_get_type()
+{
+    static const GEnumValue values[] = {
+        {static_cast<int>(Method::Volume), "Spreads the evidence of focus, then decides: more accurate",
+         "volume"},
+        {static_cast<int>(Method::Paper), "Oliva-García 2022: decides for each pixel, then fills: faster",
+         "paper"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstDepthMethod", values);
+    return type;
+}
 
 } // namespace
 
@@ -50,6 +67,14 @@ void install_depth_properties(GObjectClass *object_class)
                                 "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; "
                                 "empty: the first GPU, else the CPU",
                                 defaults.device.c_str(), ready));
+    install(property::Method, g_param_spec_enum("method", "Method", "How a stack becomes depth",
+                                                GST_TYPE_DEPTH_METHOD, static_cast<int>(p.method), playing));
+    install(property::Scale,
+            g_param_spec_uint(
+                "scale", "Scale",
+                "Of method=volume: pixels of the stack a cell of the volume in each direction: 2, 4 "
+                "or 8; 0 = 2 up to 800x600 and 4 above",
+                0, 8, p.scale, playing));
     install(
         property::Levels,
         g_param_spec_uint("levels", "Levels",
@@ -105,6 +130,12 @@ bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
     case property::Device:
         settings.device = g_value_get_string(value) ? g_value_get_string(value) : "";
         return true;
+    case property::Method:
+        p.method = static_cast<Method>(g_value_get_enum(value));
+        return true;
+    case property::Scale:
+        p.scale = g_value_get_uint(value);
+        return true;
     case property::Levels:
         p.levels = g_value_get_uint(value);
         return true;
@@ -146,6 +177,12 @@ bool get_depth_property(const DepthSettings &settings, guint id, GValue *value)
         return true;
     case property::Device:
         g_value_set_string(value, settings.device.c_str());
+        return true;
+    case property::Method:
+        g_value_set_enum(value, static_cast<int>(p.method));
+        return true;
+    case property::Scale:
+        g_value_set_uint(value, p.scale);
         return true;
     case property::Levels:
         g_value_set_uint(value, p.levels);

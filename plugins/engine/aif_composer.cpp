@@ -24,7 +24,8 @@ AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
       stack_(queue_, shape),
       in_tiles_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16),
-      noise_(queue_, shape, 2), nearest_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
+      noise_(queue_, shape, 2),
+      nearest_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
       softened_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
       positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
       encoder_(DepthEncoder::index(shape.planes))

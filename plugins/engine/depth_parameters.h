@@ -13,7 +13,7 @@ enum class Method {
 };
 
 struct DepthParameters {
-    Method method = Method::Paper;
+    Method method = Method::Volume;
     bool motion_mask = true;   /* leave pixels that moved during the sweep out of the sparse map (3) */
     float entropy_bits = 2.0f; /* entropy along z above which a pixel moved */
 
@@ -22,7 +22,8 @@ struct DepthParameters {
     float tolerance = 1.4f; /* a kept peak stands so many times above the mean over the planes */
     BilateralGrid::Parameters grid;
 
-    /* Of method=volume: pixels of the stack a pixel of the volume, in each direction; 0 = by size. */
+    /* Of method=volume: pixels of the stack a cell of the volume, in each direction: 2, 4 or 8; 0 = 2 up to
+     * 800x600 pixels and 4 above. */
     unsigned scale = 0;
 };
 

@@ -45,7 +45,8 @@ std::vector<uint16_t> softened(const std::vector<uint16_t> &depth, const StackSh
                 sum += nearest[i] == 65535 ? own : nearest[i];
                 count++;
             });
-            result.push_back(depth[y * width + x] == 0 ? 0 : static_cast<uint16_t>(1 + std::lround(sum / count)));
+            result.push_back(depth[y * width + x] == 0 ? 0
+                                                       : static_cast<uint16_t>(1 + std::lround(sum / count)));
         }
     return result;
 }

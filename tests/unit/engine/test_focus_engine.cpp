@@ -30,6 +30,17 @@ struct Maps {
     DepthOutputs outputs;
 };
 
+DepthParameters with(Method method)
+{
+    DepthParameters parameters;
+    parameters.method = method;
+    return parameters;
+}
+
+class BothMethods : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(FocusEngine, BothMethods, testing::Values(Method::Volume, Method::Paper));
+
 } // namespace
 
 /* The whole method against the twins one after the other; test_cpu_kernels holds the CPU's kernels to them.
@@ -37,7 +48,7 @@ struct Maps {
 TEST(FocusEngine, agrees_with_the_twins)
 {
     const TestStack stack({PixelFormat::Bgr, 161, 131, 10});
-    FocusEngine engine(device_with(KernelStyle::Pixels), stack.shape, {});
+    FocusEngine engine(device_with(KernelStyle::Pixels), stack.shape, with(Method::Paper));
     Maps maps(stack.shape);
     ASSERT_TRUE(engine.compute(stack.view(), maps.outputs));
 
@@ -60,21 +71,21 @@ TEST(FocusEngine, agrees_with_the_twins)
     EXPECT_LE(other_sparse, maps.depth.size() / 1000);
 }
 
-TEST(FocusEngine, a_stack_without_texture_has_no_depth)
+TEST_P(BothMethods, a_stack_without_texture_has_no_depth)
 {
     TestStack stack({PixelFormat::I420, 64, 64, 4});
     std::fill(stack.memory.begin(), stack.memory.end(), std::byte{90});
-    FocusEngine engine(Device::open(""), stack.shape, {});
+    FocusEngine engine(Device::open(""), stack.shape, with(GetParam()));
     Maps maps(stack.shape);
     EXPECT_FALSE(engine.compute(stack.view(), maps.outputs));
     EXPECT_EQ(std::count(maps.depth.begin(), maps.depth.end(), 0), 64 * 64);
     EXPECT_EQ(std::count(maps.confidence.begin(), maps.confidence.end(), 0), 64 * 64);
 }
 
-TEST(FocusEngine, the_encoder_gives_the_unit)
+TEST_P(BothMethods, the_encoder_gives_the_unit)
 {
     const TestStack stack({PixelFormat::Gray8, 96, 80, 6});
-    FocusEngine engine(Device::open(""), stack.shape, {});
+    FocusEngine engine(Device::open(""), stack.shape, with(GetParam()));
     Maps index(stack.shape), millimetre(stack.shape);
     engine.compute(stack.view(), index.outputs);
     const DepthEncoder encoder = DepthEncoder::millimetre(SweepPlan::even(6, 5.0, 1.0));
@@ -112,7 +123,7 @@ TEST(FocusEngine, every_stage_has_a_time)
                                                "splat", "solve",      "slice"};
     for (const auto &[style, stages] :
          {std::pair(KernelStyle::Pixels, of_pixels), std::pair(KernelStyle::Tiles, of_tiles)}) {
-        FocusEngine engine(device_with(style), stack.shape, {});
+        FocusEngine engine(device_with(style), stack.shape, with(Method::Paper));
         Maps maps(stack.shape);
         engine.compute(stack.view(), maps.outputs);
         for (const std::string &stage : stages)

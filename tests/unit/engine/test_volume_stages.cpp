@@ -99,6 +99,13 @@ protected:
         matching.run(filter_stage.filtered(), guide_stage.guide(), noise_stage);
     }
 
+    void expect_noise_as_made();
+    void expect_small_planes_and_focus_volume();
+    void expect_cost_volume();
+    void expect_guide_image();
+    void expect_guided_filter_and_matching();
+    void expect_fill_and_upsampling();
+
     StackShape shape;
     TestStack stack;
     CommandQueue queue;
@@ -119,7 +126,22 @@ protected:
 
 } // namespace
 
-TEST_P(VolumeStages, noise_is_told_from_silence)
+TEST_P(VolumeStages, evidence_agrees_with_its_twins)
+{
+    expect_noise_as_made();
+    expect_small_planes_and_focus_volume();
+    expect_cost_volume();
+}
+
+TEST_P(VolumeStages, decision_agrees_with_its_twins)
+{
+    run_to_matching();
+    expect_guide_image();
+    expect_guided_filter_and_matching();
+    expect_fill_and_upsampling();
+}
+
+void VolumeStages::expect_noise_as_made()
 {
     if (GetParam().silent)
         EXPECT_LT(noise.t, 0.3f);
@@ -128,7 +150,7 @@ TEST_P(VolumeStages, noise_is_told_from_silence)
     EXPECT_EQ(noise.taps[0] + 2 * (noise.taps[1] + noise.taps[2] + noise.taps[3]), 64);
 }
 
-TEST_P(VolumeStages, small_planes_and_focus_volume)
+void VolumeStages::expect_small_planes_and_focus_volume()
 {
     const twin::Colours small = read_small();
     const Volume luma = twin::mean_of_colours(stack);
@@ -146,7 +168,7 @@ TEST_P(VolumeStages, small_planes_and_focus_volume)
                  noise.taps[0] == 64 ? 0.2f : 0.6f, 3);
 }
 
-TEST_P(VolumeStages, cost_volume)
+void VolumeStages::expect_cost_volume()
 {
     const twin::Colours small = read_small();
     const Volume focus = read(focus_stage.volume(), shape.planes);
@@ -162,11 +184,9 @@ TEST_P(VolumeStages, cost_volume)
                  0.03f, 2);
 }
 
-TEST_P(VolumeStages, guide_image)
+void VolumeStages::expect_guide_image()
 {
     const twin::Colours small = read_small();
-    cost_stage.run(focus_stage, small_stage, noise_stage);
-    guide_stage.run(cost_stage, small_stage, noise_stage);
     const Volume u = read(guide_stage.nearer(), 1),
                  expected = twin::nearer_first_guess(read(cost_stage.fine(), shape.planes));
     size_t other = 0;
@@ -179,9 +199,8 @@ TEST_P(VolumeStages, guide_image)
         expect_alike(found[c], guide[c], 0.5f);
 }
 
-TEST_P(VolumeStages, guided_filter_and_matching)
+void VolumeStages::expect_guided_filter_and_matching()
 {
-    run_to_matching();
     const twin::Colours guide = read_colours(guide_stage.guide(), 1);
     const Volume filtered = read(filter_stage.filtered(), shape.planes);
     expect_alike(filtered, twin::guided_filter(read(cost_stage.cost(), shape.planes), guide, noise.t), 0.01f);
@@ -195,9 +214,8 @@ TEST_P(VolumeStages, guided_filter_and_matching)
     expect_alike(read(matching.confidence(), 1), twin::mean_over_planes(filtered), 1e-3f);
 }
 
-TEST_P(VolumeStages, fill_and_upsampling)
+void VolumeStages::expect_fill_and_upsampling()
 {
-    run_to_matching();
     const twin::Colours guide = read_colours(guide_stage.guide(), 1);
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
     fill_stage.run(matching);
@@ -233,8 +251,7 @@ TEST_P(VolumeStages, fill_and_upsampling)
 
 INSTANTIATE_TEST_SUITE_P(Volume, VolumeStages,
                          testing::Values(Case{PixelFormat::Bgr, 121, 99, 6, 2, false},
-                                         Case{PixelFormat::Bgr, 121, 99, 6, 2, true},
-                                         Case{PixelFormat::Rgbx, 160, 131, 10, 4, false},
+                                         Case{PixelFormat::Rgbx, 160, 131, 10, 4, true},
                                          Case{PixelFormat::Gray8, 163, 128, 5, 4, true},
                                          Case{PixelFormat::Gray16, 90, 70, 4, 2, false},
                                          Case{PixelFormat::I420, 133, 117, 4, 4, false},

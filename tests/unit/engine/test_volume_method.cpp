@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/engine_error.h"
+#include "engine/focus_engine.h"
+#include "test_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace dff;
+
+namespace {
+
+/* A board of squares in 8 bits, `blur` planes' worth of contrast lost a plane away from where it is sharp.
+ * The left half is sharp in `left`, the right in `right`. */
+TestStack two_halves(const StackShape &shape, float left, float right, float noise = 0.0f)
+{
+    TestStack stack(shape);
+    std::mt19937 random(7);
+    std::normal_distribution<float> grain(0.0f, 1.0f);
+    const std::vector<Component> components = shape.components();
+    for (size_t c = 0; c < components.size(); c++)
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 0; y < components[c].height; y++)
+                for (unsigned x = 0; x < components[c].width; x++) {
+                    const unsigned pixel_x = x / components[c].channels * components[c].subsampling;
+                    const float sharp_at = pixel_x < shape.width / 2 ? left : right;
+                    const float contrast = 60.0f / (1.0f + std::abs(static_cast<float>(z) - sharp_at));
+                    const float wave =
+                        std::sin(0.9f * static_cast<float>(pixel_x)) + std::sin(0.8f * static_cast<float>(y));
+                    const float value = 128.0f + contrast * wave + noise * grain(random);
+                    const RowLayout &rows = stack.layout[c * shape.planes + z];
+                    for (unsigned byte = 0; byte < components[c].sample_bytes; byte++)
+                        stack.memory[rows.offset + rows.stride * y + x * components[c].sample_bytes + byte] =
+                            static_cast<std::byte>(std::clamp(value, 0.0f, 255.0f));
+                }
+    return stack;
+}
+
+struct Result {
+    std::vector<double> u; /* -1 where there is no value */
+    std::vector<uint16_t> depth, sparse;
+    std::vector<uint8_t> confidence;
+};
+
+Result compute(const TestStack &stack, bool with_maps = false)
+{
+    const StackShape &shape = stack.shape;
+    DepthParameters parameters;
+    parameters.method = Method::Volume;
+    FocusEngine engine(Device::open(""), shape, parameters);
+    Result result;
+    result.depth.resize(size_t{shape.width} * shape.height);
+    result.sparse.resize(result.depth.size());
+    result.confidence.resize(result.depth.size());
+    DepthOutputs outputs;
+    outputs.depth = {std::as_writable_bytes(std::span(result.depth)).data(), shape.width * sizeof(uint16_t)};
+    if (with_maps) {
+        outputs.sparse = {std::as_writable_bytes(std::span(result.sparse)).data(),
+                          shape.width * sizeof(uint16_t)};
+        outputs.confidence = {std::as_writable_bytes(std::span(result.confidence)).data(), shape.width};
+    }
+    engine.compute(stack.view(), outputs);
+    const DepthEncoder encoder = DepthEncoder::index(shape.planes);
+    for (const uint16_t pixel : result.depth)
+        result.u.push_back(encoder.decode(pixel).value_or(-1.0));
+    return result;
+}
+
+/* Mean error of the middle of each half, in planes. */
+double error_of(const Result &result, const StackShape &shape, float left, float right)
+{
+    double sum = 0.0;
+    unsigned count = 0;
+    for (unsigned y = 8; y + 8 < shape.height; y++)
+        for (unsigned x = 8; x + 8 < shape.width; x++) {
+            if (x + 12 > shape.width / 2 && x < shape.width / 2 + 12)
+                continue;
+            const double u = result.u[size_t{y} * shape.width + x];
+            sum += std::abs(u - (x < shape.width / 2 ? left : right));
+            count++;
+        }
+    return sum / count;
+}
+
+} // namespace
+
+class VolumeShapes : public testing::TestWithParam<StackShape> {};
+
+TEST_P(VolumeShapes, two_surfaces_lie_in_their_planes)
+{
+    const StackShape shape = GetParam();
+    const auto last = static_cast<float>(shape.planes - 1);
+    const float left = std::round(0.2f * last), right = std::round(0.8f * last);
+    const Result result = compute(two_halves(shape, left, right));
+    EXPECT_LT(error_of(result, shape, left, right), 0.25 + 0.01 * last);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    VolumeMethod, VolumeShapes,
+    testing::Values(StackShape{PixelFormat::Gray8, 64, 64, 2}, StackShape{PixelFormat::Gray8, 99, 67, 3},
+                    StackShape{PixelFormat::Gray8, 120, 90, 64}, StackShape{PixelFormat::Gray16, 131, 97, 6},
+                    StackShape{PixelFormat::I420, 161, 121, 10}, StackShape{PixelFormat::Nv12, 160, 121, 6},
+                    StackShape{PixelFormat::Rgb, 97, 131, 5}, StackShape{PixelFormat::Bgrx, 129, 80, 5}));
+
+TEST(VolumeMethod, depth_is_finer_than_a_plane)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 8};
+    EXPECT_LT(error_of(compute(two_halves(shape, 2.5f, 4.5f)), shape, 2.5f, 4.5f), 0.2);
+}
+
+TEST(VolumeMethod, noise_moves_surfaces_by_less_than_half_a_plane)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 8};
+    EXPECT_LT(error_of(compute(two_halves(shape, 2.0f, 5.0f, 8.0f)), shape, 2.0f, 5.0f), 0.5);
+}
+
+/* A blank middle between textured surroundings, all in one plane. */
+TEST(VolumeMethod, what_has_no_texture_is_smooth_and_says_so)
+{
+    const StackShape shape{PixelFormat::Gray8, 192, 192, 6};
+    TestStack stack = two_halves(shape, 3.0f, 3.0f);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 64; y < 128; y++)
+            for (unsigned x = 64; x < 128; x++)
+                stack.memory[stack.layout[z].offset + stack.layout[z].stride * y + x] = std::byte{128};
+    const Result result = compute(stack, true);
+    double off = 0.0;
+    for (unsigned y = 72; y < 120; y++)
+        for (unsigned x = 72; x < 120; x++) {
+            const size_t pixel = size_t{y} * shape.width + x;
+            off = std::max(off, std::abs(result.u[pixel] - 3.0));
+            ASSERT_LT(result.confidence[pixel], result.confidence[size_t{20} * shape.width + 20] / 2);
+            ASSERT_EQ(result.sparse[pixel], 0);
+        }
+    EXPECT_LT(off, 0.5);
+    EXPECT_EQ(result.sparse[size_t{20} * shape.width + 20], result.depth[size_t{20} * shape.width + 20]);
+}
+
+TEST(VolumeMethod, a_scale_that_there_is_not_is_refused)
+{
+    DepthParameters parameters;
+    parameters.method = Method::Volume;
+    parameters.scale = 3;
+    EXPECT_THROW(FocusEngine(Device::open(""), {PixelFormat::Gray8, 64, 64, 4}, parameters), EngineError);
+}
