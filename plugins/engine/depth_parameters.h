@@ -13,7 +13,7 @@ enum class Method {
 };
 
 struct DepthParameters {
-    Method method = Method::Paper;
+    Method method = Method::Volume;
     bool motion_mask = true;   /* leave pixels that moved during the sweep out of the sparse map (3) */
     float entropy_bits = 2.0f; /* entropy along z above which a pixel moved */
 
