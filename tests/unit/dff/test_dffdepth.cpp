@@ -196,7 +196,7 @@ TEST(DffDepth, the_stream_of_another_size_goes_on)
 TEST(DffDepth, live_latency_holds_the_computing)
 {
     TestPipeline pipeline(
-        "lenssweeptestsrc is-live=true num-buffers=60 ! video/x-raw,width=96,height=64 ! focalstackmux "
+        "lenssweeptestsrc is-live=true num-buffers=60 ! video/x-raw,width=640,height=480 ! focalstackmux "
         "! dffdepth name=d ! appsink name=out");
     pipeline.play();
     gst_sample_unref(pipeline.pull("out"));

@@ -22,9 +22,9 @@ TEST(SmallDevice, running_out_of_memory_is_an_error_that_says_what_to_do)
 {
     const std::vector<guint8> blob(size_t{8192} * 8192 * 3, 90);
     const std::string file = dff::write_file("medium", blob);
-    const dff::Outcome outcome =
-        dff::run("multifilesrc num-buffers=1 location=" + file +
-                 " caps=\"video/x-focal-stack,"
-                 "format=GRAY8,width=8192,height=8192,planes=3,framerate=1/1\" ! dffdepth ! fakesink");
+    const dff::Outcome outcome = dff::run(
+        "multifilesrc num-buffers=1 location=" + file +
+        " caps=\"video/x-focal-stack,"
+        "format=GRAY8,width=8192,height=8192,planes=3,framerate=1/1\" ! dffdepth method=volume ! fakesink");
     EXPECT_NE(outcome.error.find("smaller pictures"), std::string::npos) << outcome.error;
 }
