@@ -75,8 +75,10 @@ say "Testing the release build"
 meson_tests build-release
 
 say "Building in build-sanitize, with the address and undefined-behaviour sanitizers"
+# The sanitizers make g++ 12 see uninitialised values where there are none; the release build has that warning.
 check "sanitizer build, without a warning" build build-sanitize -Doptimization=g -Ddebug=true -Dwerror=true \
-    -Dauto_features=enabled -Dintrospection=disabled -Db_sanitize=address,undefined -Db_lundef=false
+    -Dauto_features=enabled -Dintrospection=disabled -Db_sanitize=address,undefined -Db_lundef=false \
+    -Dcpp_args=-Wno-error=maybe-uninitialized
 say "Testing the sanitizer build"
 meson_tests build-sanitize
 
