@@ -17,6 +17,7 @@ std::vector<float> GaussianBlur::taps_for(unsigned sigma_xy)
 
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<float> taps;
+    taps.reserve(weights.size());
     for (const double weight : weights)
         taps.push_back(static_cast<float>(weight / sum));
     return taps;

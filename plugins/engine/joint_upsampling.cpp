@@ -8,7 +8,7 @@ namespace {
 
 std::string build_options(PixelFormat format, cl_int scale)
 {
-    const std::string options = "-DSCALE=" + std::to_string(scale) + " " + Luma::build_options(format);
+    std::string options = "-DSCALE=" + std::to_string(scale) + " " + Luma::build_options(format);
     if (is_interleaved(format))
         return options + " -DINTERLEAVED";
     if (format == PixelFormat::I420)

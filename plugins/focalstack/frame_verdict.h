@@ -24,9 +24,10 @@ constexpr unsigned longest_delay(unsigned planes)
     return planes > 16 ? planes : 16;
 }
 
+/* `plane` is below longest_stack; the remainder makes that plain to whoever reasons without knowing it. */
 constexpr uint64_t plane_bit(unsigned plane)
 {
-    return uint64_t{1} << plane;
+    return uint64_t{1} << (plane % longest_stack);
 }
 
 constexpr uint64_t all_planes(unsigned planes)

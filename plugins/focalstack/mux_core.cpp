@@ -306,6 +306,7 @@ GstFlowReturn MuxCore::put(PlaneFrame &frame, const GstVideoInfo &info)
     }
     frame.picture = &picture;
     const bool put = maker_->add(frame);
+    frame.picture = nullptr;
     gst_video_frame_unmap(&picture);
     if (!put) {
         GST_ELEMENT_ERROR(

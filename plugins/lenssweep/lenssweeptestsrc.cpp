@@ -103,7 +103,7 @@ static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
 static std::stop_token rendering_token(GstLensSweepTestSrc *self)
 {
     GST_OBJECT_LOCK(self);
-    const std::stop_token token = self->state->stop.get_token();
+    std::stop_token token = self->state->stop.get_token();
     GST_OBJECT_UNLOCK(self);
     return token;
 }

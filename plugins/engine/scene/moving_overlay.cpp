@@ -43,8 +43,9 @@ template <typename Pixel> cv::Mat_<Pixel> warp_picture(const cv::Mat_<Pixel> &pi
 template cv::Mat3f warp_picture(const cv::Mat3f &, const PlaneView &);
 template cv::Mat4f warp_picture(const cv::Mat4f &, const PlaneView &);
 
-MovingOverlay::MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball, std::vector<PlaneView> views,
-                             double depth_to_position, const std::stop_token &stop)
+MovingOverlay::MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball,
+                             const std::vector<PlaneView> &views, double depth_to_position,
+                             const std::stop_token &stop)
     : ball_(std::move(ball)), picture_(renderer.size())
 {
     const double u = MovingBall::depth * depth_to_position;

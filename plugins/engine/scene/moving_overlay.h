@@ -29,7 +29,7 @@ struct PicturePatch {
 class MovingOverlay {
 public:
     /* `depth_to_position` is the plane position of depth 1. Unusable where `stop` was requested. */
-    MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball, std::vector<PlaneView> views,
+    MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball, const std::vector<PlaneView> &views,
                   double depth_to_position, const std::stop_token &stop);
 
     const MovingBall &ball() const { return ball_; }

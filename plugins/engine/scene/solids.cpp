@@ -79,7 +79,7 @@ std::optional<Hit> meet_mantle(const Pillar &pillar, const Ray &ray, const cv::V
 std::optional<Hit> meet(const Pillar &pillar, const Ray &ray)
 {
     const cv::Vec3d offset = ray.origin - pillar.center;
-    if (const auto hit = meet_mantle(pillar, ray, offset))
+    if (auto hit = meet_mantle(pillar, ray, offset))
         return hit;
     const double t = (-pillar.half_height - offset[1]) / ray.direction[1];
     const cv::Vec3d point = offset + t * ray.direction;
