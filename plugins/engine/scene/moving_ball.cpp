@@ -72,7 +72,8 @@ cv::Point2d MovingBall::center(double time) const
 cv::Mat4f MovingBall::draw(double time, const cv::Matx23d &warp, const cv::Rect &where) const
 {
     /* Sprite to picture, then the picture's own warp, then to the part asked for. */
-    const cv::Point2d offset = center(time) - cv::Point2d(sprite_.cols / 2, sprite_.rows / 2);
+    const cv::Point middle(sprite_.cols / 2, sprite_.rows / 2);
+    const cv::Point2d offset = center(time) - cv::Point2d(middle);
     const cv::Matx23d place(warp(0, 0), warp(0, 1),
                             warp(0, 0) * offset.x + warp(0, 1) * offset.y + warp(0, 2) - where.x, warp(1, 0),
                             warp(1, 1), warp(1, 0) * offset.x + warp(1, 1) * offset.y + warp(1, 2) - where.y);
