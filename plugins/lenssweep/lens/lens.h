@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "optics/sweep_plan.h"
+
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+
+namespace dff {
+
+/* The lens, or what drives it, does not do what it was told. The text is for the user and says what to do. */
+class LensError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/* The sweep that a lens is asked for. */
+struct LensSweep {
+    SweepPlan plan;
+    std::chrono::microseconds period{};   /* from one exposure to the next; of no use to a stepped lens */
+    std::chrono::microseconds exposure{}; /* during which the lens rests; of no use to a stepped lens */
+    bool gated = false;                   /* a sequencer sweeps only while its run line is high */
+};
+
+/* A lens that is swept: a SequencedLens, which sweeps by itself and triggers the camera, a SteppedLens, which
+ * is moved from plane to plane, or neither, if nobody here moves it.
+ *
+ * The order of calls is prepare(), start(), moves, stop(), as often as wanted. Transfers that fail are tried
+ * again a few times; then the lens is left in its safe state and LensError is thrown. Not thread safe, but
+ * for the std::stop_token of waits.
+ */
+class Lens {
+public:
+    /* As stop(). */
+    virtual ~Lens() = default;
+
+    Lens() = default;
+    Lens(const Lens &) = delete;
+    Lens &operator=(const Lens &) = delete;
+
+    /* Takes a sweep up; nothing moves yet. Throws std::invalid_argument, with the range in its text, for
+     * powers that the lens cannot reach and times that it cannot keep. */
+    virtual void prepare(const LensSweep &sweep) = 0;
+
+    /* Wakes the lens. A sequencer begins with plane 0 (if gated, as soon as the run line is high), so the
+     * camera is armed before. */
+    virtual void start() = 0;
+
+    /* The safe state: no trigger is given any more, and the lens rests. */
+    virtual void stop() = 0;
+
+    /* Whether the powers of the plan are dioptres that the lens was calibrated in. If not, planes are in
+     * order, nearest first, and that is all. */
+    virtual bool calibrated() const = 0;
+
+    /* What the lens is told for a plane of the prepared sweep, for GstFocusMeta; -1 if that is no number. */
+    virtual int code(unsigned plane) const = 0;
+};
+
+/* A lens that is moved to a plane, and then exposed. */
+class SteppedLens : public Lens {
+public:
+    /* Begins to move. */
+    virtual void move_to(unsigned plane) = 0;
+
+    /* Waits until the lens rests at its plane. False if `stop` was requested before; throws LensError if the
+     * lens does not come to rest within a time that is far too long for it. */
+    virtual bool wait_settled(const std::stop_token &stop) = 0;
+};
+
+/* A lens in the hands of a sequencer, which triggers the camera and numbers sweeps. */
+class SequencedLens : public Lens {
+public:
+    /* Throws LensError, with the reason, if the sequencer has stopped by itself. */
+    virtual void check() = 0;
+
+    /* Sweeps begun since the sequencer's reset: one for each pulse of the sync line. */
+    virtual std::uint32_t sweep_count() = 0;
+
+    /* Triggers given since the sequencer's reset. */
+    virtual std::uint32_t frame_count() = 0;
+};
+
+} // namespace dff

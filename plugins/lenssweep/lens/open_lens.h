@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "lens.h"
+#include "lens_uri.h"
+
+#include <memory>
+#include <string>
+
+namespace dff {
+
+class CameraFeatures;
+
+/* What a lens may need besides its URI. */
+struct LensSurroundings {
+    std::string profile; /* file of a LensProfile; empty for the one shipped (fpga, max14574) */
+    CameraFeatures *features = nullptr; /* of the camera, for genicam; it outlives the lens */
+};
+
+/* Opens a lens; what comes is a SequencedLens (fpga), a SteppedLens (max14574, genicam, v4l2), or a Lens that
+ * nobody moves (none). Throws LensError if the device is missing or something else, std::invalid_argument for
+ * a profile that cannot be used. */
+std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings);
+
+} // namespace dff
