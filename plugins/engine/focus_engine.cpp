@@ -75,6 +75,7 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
             queue_.commands().enqueueReadBuffer(*method_->residual(), CL_FALSE, 0, sizeof residual,
                                                 &residual);
         times_ = queue_.finish();
+        stack_.remember(stack);
     });
     residual_ = method_->residual() ? std::optional(residual) : std::nullopt;
     return first != DepthScale::no_value;

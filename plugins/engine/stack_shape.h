@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,11 +41,22 @@ struct RowLayout {
     bool operator==(const RowLayout &) const = default;
 };
 
+/* Which plane of which sweep a picture is. */
+struct PlaneIdentity {
+    uint64_t sweep;
+    uint32_t plane;
+
+    bool operator==(const PlaneIdentity &) const = default;
+};
+
 /* A stack in host memory: `layout[component * planes + z]` says where each component of each plane lies. */
 struct StackView {
     StackShape shape;
     std::span<const std::byte> memory;
     std::vector<RowLayout> layout;
+
+    /* A plane each, where its picture is known to be its own; empty where nothing is known. */
+    std::vector<std::optional<PlaneIdentity>> identities = {};
 };
 
 /* Layout of planes that follow each other in one memory without any padding. For tests and plain

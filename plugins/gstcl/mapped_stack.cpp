@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/mapped_stack.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace dff {
@@ -46,6 +47,22 @@ std::vector<RowLayout> locate_planes(const GstFocalStackInfo &info, GstBuffer *b
     return layout;
 }
 
+/* None of planes that were lost or repeat another's picture. */
+std::vector<std::optional<PlaneIdentity>> identify_planes(guint planes, GstBuffer *buffer)
+{
+    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(buffer);
+    if (!meta)
+        return {};
+    std::vector<std::optional<PlaneIdentity>> identities(planes);
+    for (guint z = 0; z < std::min(planes, meta->planes); z++) {
+        GstFocusInfo focus;
+        const bool own = ((meta->missing | meta->repeated) >> z & 1) == 0;
+        if (own && gst_focal_stack_meta_get_focus(meta, z, &focus))
+            identities[z] = PlaneIdentity{focus.sweep, focus.plane};
+    }
+    return identities;
+}
+
 } // namespace
 
 StackShape stack_shape(const GstFocalStackInfo &info)
@@ -59,6 +76,7 @@ MappedStack::MappedStack(const GstFocalStackInfo &info, GstBuffer *buffer) : buf
 {
     view_.shape = stack_shape(info);
     view_.layout = locate_planes(info, buffer);
+    view_.identities = identify_planes(info.planes, buffer);
     if (!gst_buffer_map(buffer, &map_, GST_MAP_READ))
         throw std::runtime_error("The stack's memory cannot be read");
     view_.memory = {reinterpret_cast<const std::byte *>(map_.data), map_.size};

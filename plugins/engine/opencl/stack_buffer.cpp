@@ -17,6 +17,8 @@ void StackBuffer::assign(const StackView &view)
     auto *memory = const_cast<std::byte *>(view.memory.data());
 
     bytes_ = cl::Buffer(queue_.device().context(), CL_MEM_READ_ONLY | placement, view.memory.size(), memory);
+    changed_planes_ = tracker_.changed(view);
+    tracker_.forget();
     if (view.layout != host_layout_) {
         host_layout_ = view.layout;
         queue_.commands().enqueueWriteBuffer(layout_, CL_TRUE, 0, host_layout_.size() * sizeof(RowLayout),

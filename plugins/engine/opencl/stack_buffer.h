@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/opencl/command_queue.h"
-#include "engine/stack_shape.h"
+#include "engine/plane_tracker.h"
 
 namespace dff {
 
@@ -16,6 +16,12 @@ public:
     /* Points the buffer at the stack in `view`, whose shape must be this one's. */
     void assign(const StackView &view);
 
+    /* Bit z is set where plane z is another than in the stack of the last remember(). */
+    uint64_t changed_planes() const { return changed_planes_; }
+
+    /* All that was asked of the stack in `view`, the last one assigned, has been computed. */
+    void remember(const StackView &view) { tracker_.remember(view); }
+
     const StackShape &shape() const { return shape_; }
     const cl::Buffer &bytes() const { return bytes_; }
 
@@ -26,6 +32,8 @@ private:
     CommandQueue &queue_;
     StackShape shape_;
     std::vector<RowLayout> host_layout_;
+    PlaneTracker tracker_;
+    uint64_t changed_planes_ = ~uint64_t{0};
     cl::Buffer bytes_;
     cl::Buffer layout_;
 };
