@@ -17,10 +17,6 @@ cd "$(dirname "$0")/.."
 . pipelines/setup.sh
 
 planes=10 stacks=30 width=640 height=480 rate=25
-# Warm is near: depth is smaller where it is nearer, so it is turned over before it is coloured. The colorimetry keeps it
-# off 0 and 255, where solarize would wrap around.
-colour_map="videoconvert ! video/x-raw,format=BGRx,colorimetry=2:1:5:1 !
-    solarize start=0 threshold=0 end=256 ! coloreffects preset=heat"
 
 fail() {
     verdict="FAILED: $*"
@@ -66,7 +62,7 @@ pictures() {
     fi
     echo "c. ! videoconvert ! tee name=a
         a. ! queue ! pngenc ! multifilesink location=demo/all-in-focus.png
-        d. ! queue ! $colour_map ! videoconvert ! tee name=m
+        d. ! queue ! depthcolorize ! videoconvert ! tee name=m
         m. ! queue ! pngenc ! multifilesink location=demo/depth.png
         a. ! queue ! videoscale ! p.sink_0  m. ! queue ! videoscale ! p.sink_1
         compositor name=p sink_0::width=$width sink_0::height=$height

@@ -5,7 +5,7 @@
 
 run_packages=(
     gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
-    gstreamer1.0-plugins-ugly pocl-opencl-icd)
+    gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd)
 build_packages=(
     build-essential pkg-config meson ninja-build
     libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gobject-introspection libgirepository1.0-dev

@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 SECONDS_EACH = 60
-OUR_CATEGORIES = ('lenssweep*', 'focalstack*', 'dff*', 'aif*')
+OUR_CATEGORIES = ('lenssweep*', 'focalstack*', 'dff*', 'aif*', 'depth*')
 COMPLAINT = re.compile(r'^WARNING:|^ERROR:| (WARN|ERROR) |-(CRITICAL|WARNING) \*\*|runtime error:|ERROR: AddressSanitizer',
                        re.MULTILINE)
 
