@@ -66,6 +66,7 @@ cl::Device choose(const std::vector<cl::Device> &devices, const std::string &wis
 
 Device::Device(cl::Device device, std::optional<KernelStyle> style)
     : device_(std::move(device)), context_(device_),
+      programs_(std::make_unique<ProgramCache>(context_, device_)),
       is_cpu_((device_.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0),
       kernel_style_(style.value_or(is_cpu_ ? KernelStyle::Tiles : KernelStyle::Pixels)),
       global_memory_(device_.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()),
@@ -81,7 +82,8 @@ std::string Device::name() const
 std::shared_ptr<Device> Device::open(const std::string &wish)
 {
     static std::mutex mutex; /* guards the list of open devices; nothing else is locked under it */
-    static std::map<cl_device_id, std::weak_ptr<Device>> open_devices;
+    /* Never destroyed: at the process's end the driver may have gone before it. */
+    static auto &open_devices = *new std::map<cl_device_id, std::shared_ptr<Device>>;
 
     const std::vector<cl::Device> devices = all_devices();
     if (devices.empty())
@@ -92,8 +94,7 @@ std::shared_ptr<Device> Device::open(const std::string &wish)
 
     const cl::Device chosen = choose(devices, wish);
     const std::lock_guard lock(mutex);
-    std::weak_ptr<Device> &known = open_devices[chosen.get()];
-    std::shared_ptr<Device> device = known.lock();
+    std::shared_ptr<Device> &device = open_devices[chosen.get()];
     if (!device) {
         try {
             device = std::make_shared<Device>(chosen);
@@ -102,7 +103,6 @@ std::shared_ptr<Device> Device::open(const std::string &wish)
                               "The OpenCL device " + chosen.getInfo<CL_DEVICE_NAME>() +
                                   " cannot be opened (error " + std::to_string(error.err()) + ")");
         }
-        known = device;
     }
     return device;
 }

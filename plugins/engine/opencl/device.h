@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/opencl/opencl.h"
+#include "engine/opencl/program_cache.h"
 
 #include <functional>
 #include <memory>
@@ -18,8 +19,8 @@ enum class KernelStyle { Pixels, Tiles };
 class Device {
 public:
     /* Opens the device whose name contains `wish`, ignoring case; with an empty wish the first GPU, else the
-     * first device. Engines in one process that ask for the same device share it. Throws EngineError
-     * (NoDevice) with the list of devices if there is none. */
+     * first device. Engines in one process that ask for the same device share it, and it stays open for those
+     * that come later. Throws EngineError (NoDevice) with the list of devices if there is none. */
     static std::shared_ptr<Device> open(const std::string &wish);
 
     /* A device of one's own; CPUs get KernelStyle::Tiles unless told otherwise. */
@@ -27,6 +28,7 @@ public:
 
     const cl::Device &device() const { return device_; }
     const cl::Context &context() const { return context_; }
+    ProgramCache &programs() const { return *programs_; }
     std::string name() const;
 
     /* The device works in the host's memory, so that stacks can be used in place. */
@@ -40,6 +42,7 @@ public:
 private:
     cl::Device device_;
     cl::Context context_;
+    std::unique_ptr<ProgramCache> programs_;
     bool is_cpu_;
     KernelStyle kernel_style_;
     size_t global_memory_;

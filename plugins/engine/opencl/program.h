@@ -9,13 +9,16 @@
 
 namespace dff {
 
-/* One file of kernels/, built for a device. */
+/* One file of kernels/ for a device, built at its first use in the process. */
 class Program {
 public:
-    /* Builds kernels/common.cl and kernels/NAME.cl with preprocessor `options` ("-DPLANES=6 ...").
-     * Throws EngineError with the compiler's log if it does not build. */
-    Program(const Device &device, std::string_view name, const std::string &options = "");
+    /* See ProgramCache::get(). `options` are the preprocessor's: "-DPLANES=6 ...". */
+    Program(const Device &device, std::string_view name, const std::string &options = "")
+        : program_(device.programs().get(name, options))
+    {
+    }
 
+    /* A kernel of one's own: its arguments are nobody else's. */
     cl::Kernel kernel(const char *name) const { return {program_, name}; }
 
 private:
