@@ -3,10 +3,15 @@
 #include "config.h"
 #include "depthcolorize.h"
 #include "depthuncolorize.h"
+#include "dffmetadepay.h"
+#include "dffmetapay.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
-    return GST_ELEMENT_REGISTER(depthcolorize, plugin) && GST_ELEMENT_REGISTER(depthuncolorize, plugin);
+    const bool colours =
+        GST_ELEMENT_REGISTER(depthcolorize, plugin) && GST_ELEMENT_REGISTER(depthuncolorize, plugin);
+    const bool metas = GST_ELEMENT_REGISTER(dffmetapay, plugin) && GST_ELEMENT_REGISTER(dffmetadepay, plugin);
+    return colours && metas;
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, depthio, "Depth as colours, pictures and points",

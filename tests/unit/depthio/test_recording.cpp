@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "depth_frame.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+using namespace dff;
+
+namespace {
+
+struct SampleDeleter {
+    void operator()(GstSample *sample) const { gst_sample_unref(sample); }
+};
+using Sample = std::unique_ptr<GstSample, SampleDeleter>;
+
+/* Everything that leaves the appsinks `names` of a pipeline, until its end. */
+std::vector<std::vector<Sample>> play(const std::string &description, const std::vector<const char *> &names)
+{
+    gst_init(nullptr, nullptr);
+    g_autoptr(GError) error = nullptr;
+    g_autoptr(GstElement) pipeline = gst_parse_launch(description.c_str(), &error);
+    EXPECT_EQ(error, nullptr) << error->message;
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    std::vector<std::vector<Sample>> samples(names.size());
+    for (size_t k = 0; k < names.size(); k++) {
+        g_autoptr(GstElement) sink = gst_bin_get_by_name(GST_BIN(pipeline), names[k]);
+        GstSample *sample = nullptr;
+        for (;;) {
+            g_signal_emit_by_name(sink, "try-pull-sample", 20 * GST_SECOND, &sample);
+            if (!sample)
+                break;
+            samples[k].emplace_back(sample);
+        }
+    }
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline); /* files end a little later */
+    g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    EXPECT_TRUE(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    return samples;
+}
+
+std::string file_name(const char *name)
+{
+    return testing::TempDir() + name + std::to_string(getpid()) + ".gdp";
+}
+
+std::vector<guint8> content(GstBuffer *buffer)
+{
+    std::vector<guint8> bytes(gst_buffer_get_size(buffer));
+    gst_buffer_extract(buffer, 0, bytes.data(), bytes.size());
+    return bytes;
+}
+
+/* Every field of a meta at once; empty without the meta. */
+template <typename Meta> std::string fields(Meta *meta, GBytes *(*to_bytes)(const Meta *))
+{
+    if (!meta)
+        return {};
+    g_autoptr(GBytes) bytes = to_bytes(meta);
+    gsize size = 0;
+    const auto *data = static_cast<const char *>(g_bytes_get_data(bytes, &size));
+    return {data, size};
+}
+
+std::string camera_clock(GstBuffer *buffer)
+{
+    const GstReferenceTimestampMeta *meta = gst_buffer_get_reference_timestamp_meta(buffer, nullptr);
+    if (!meta)
+        return {};
+    g_autofree gchar *clock = gst_caps_to_string(meta->reference);
+    return std::string(clock) + " " + std::to_string(meta->timestamp) + " " + std::to_string(meta->duration);
+}
+
+void expect_same(GstSample *one, GstSample *other)
+{
+    GstBuffer *a = gst_sample_get_buffer(one), *b = gst_sample_get_buffer(other);
+    EXPECT_EQ(GST_BUFFER_PTS(a), GST_BUFFER_PTS(b));
+    EXPECT_EQ(GST_BUFFER_DURATION(a), GST_BUFFER_DURATION(b));
+    EXPECT_TRUE(gst_caps_is_equal(gst_sample_get_caps(one), gst_sample_get_caps(other)));
+    EXPECT_EQ(content(a), content(b));
+    EXPECT_EQ(fields(gst_buffer_get_focus_meta(a), gst_focus_meta_to_bytes),
+              fields(gst_buffer_get_focus_meta(b), gst_focus_meta_to_bytes));
+    EXPECT_EQ(fields(gst_buffer_get_focal_stack_meta(a), gst_focal_stack_meta_to_bytes),
+              fields(gst_buffer_get_focal_stack_meta(b), gst_focal_stack_meta_to_bytes));
+    EXPECT_EQ(fields(gst_buffer_get_depth_meta(a), gst_depth_meta_to_bytes),
+              fields(gst_buffer_get_depth_meta(b), gst_depth_meta_to_bytes));
+    EXPECT_EQ(camera_clock(a), camera_clock(b));
+}
+
+void expect_same(const std::vector<Sample> &live, const std::vector<Sample> &replayed, size_t count)
+{
+    ASSERT_EQ(live.size(), count);
+    ASSERT_EQ(replayed.size(), count);
+    for (size_t k = 0; k < count; k++)
+        expect_same(live[k].get(), replayed[k].get());
+}
+
+const std::string camera = "lenssweeptestsrc num-buffers=18 planes=6 near=4 far=0.5 motion=1 noise=strong ! "
+                           "video/x-raw,format=I420,width=160,height=120";
+
+} // namespace
+
+TEST(Recording, replayed_stacks_give_the_same_depth_to_the_bit)
+{
+    const std::string file = file_name("stacks");
+    const auto live = play(camera +
+                               " ! focalstackmux ! tee name=s "
+                               "s. ! queue ! dffmetapay ! gdppay ! filesink location=" +
+                               file +
+                               " s. ! queue ! appsink name=stack sync=false "
+                               "s. ! queue ! dffdepth ! appsink name=depth sync=false",
+                           {"stack", "depth"});
+    const auto replayed = play("filesrc location=" + file +
+                                   " ! gdpdepay ! dffmetadepay ! tee name=s "
+                                   "s. ! queue ! appsink name=stack sync=false "
+                                   "s. ! queue ! dffdepth ! appsink name=depth sync=false",
+                               {"stack", "depth"});
+    unlink(file.c_str());
+    expect_same(live[0], replayed[0], 3);
+    expect_same(live[1], replayed[1], 3);
+    EXPECT_FALSE(fields(gst_buffer_get_focal_stack_meta(gst_sample_get_buffer(replayed[0][2].get())),
+                        gst_focal_stack_meta_to_bytes)
+                     .empty());
+}
+
+TEST(Recording, planes_compressed_without_loss_give_the_same_depth_to_the_bit)
+{
+    const std::string file = file_name("planes");
+    const auto live = play(camera +
+                               " ! tee name=p "
+                               "p. ! queue ! dffmetapay ! avenc_ffv1 ! gdppay ! filesink location=" +
+                               file +
+                               " p. ! queue ! appsink name=plane sync=false "
+                               "p. ! queue ! focalstackmux ! dffdepth ! appsink name=depth sync=false",
+                           {"plane", "depth"});
+    const auto replayed = play("filesrc location=" + file +
+                                   " ! gdpdepay ! avdec_ffv1 ! dffmetadepay ! tee name=p "
+                                   "p. ! queue ! appsink name=plane sync=false "
+                                   "p. ! queue ! focalstackmux ! dffdepth ! appsink name=depth sync=false",
+                               {"plane", "depth"});
+    unlink(file.c_str());
+    ASSERT_EQ(live[1].size(), 3u);
+    ASSERT_EQ(replayed[1].size(), 3u);
+    for (size_t k = 0; k < 3; k++)
+        EXPECT_EQ(content(gst_sample_get_buffer(live[1][k].get())),
+                  content(gst_sample_get_buffer(replayed[1][k].get())));
+    ASSERT_EQ(live[0].size(), 18u);
+    ASSERT_EQ(replayed[0].size(), 18u);
+    for (size_t k = 0; k < 18; k++) {
+        const std::string focus = fields(gst_buffer_get_focus_meta(gst_sample_get_buffer(live[0][k].get())),
+                                         gst_focus_meta_to_bytes);
+        EXPECT_FALSE(focus.empty());
+        EXPECT_EQ(focus, fields(gst_buffer_get_focus_meta(gst_sample_get_buffer(replayed[0][k].get())),
+                                gst_focus_meta_to_bytes));
+    }
+}
+
+TEST(Recording, depth_and_the_camera_clock_keep_their_metas)
+{
+    gst_init(nullptr, nullptr);
+    const Harness harness = depth_harness("dffmetapay ! rtpgstpay ! rtpgstdepay ! dffmetadepay", 16, 8);
+    const GstDepthInfo depth = dioptres_from_5_to_1();
+    g_autoptr(GstCaps) clock = gst_caps_from_string("timestamp/x-camera");
+    for (guint64 k = 0; k < 3; k++) {
+        Buffer frame = depth_frame(16, 8, [](unsigned x, unsigned y) { return 1000 * x + y; });
+        gst_buffer_add_depth_meta(frame.get(), &depth)->sequence = 41 + k;
+        gst_buffer_add_reference_timestamp_meta(frame.get(), clock, 1234567890123 + k, 5);
+        const std::string before = fields(gst_buffer_get_depth_meta(frame.get()), gst_depth_meta_to_bytes);
+        const std::string time = camera_clock(frame.get());
+        gst_harness_push(harness.get(), frame.release());
+        const Buffer back(gst_harness_pull(harness.get()));
+        EXPECT_EQ(fields(gst_buffer_get_depth_meta(back.get()), gst_depth_meta_to_bytes), before);
+        EXPECT_EQ(camera_clock(back.get()), time);
+    }
+}
+
+TEST(Recording, a_damaged_meta_is_an_error_that_says_so)
+{
+    const Harness harness = depth_harness("dffmetadepay", 16, 8);
+    g_autoptr(GstBus) bus = gst_bus_new();
+    gst_element_set_bus(harness->element, bus);
+    g_autoptr(GstBuffer) data = gst_buffer_new_memdup("D\1cut", 5);
+    gst_harness_push_event(
+        harness.get(), gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
+                                            gst_structure_new("GstDffMeta", "kind", G_TYPE_STRING, "depth",
+                                                              "data", GST_TYPE_BUFFER, data, nullptr)));
+    EXPECT_EQ(
+        gst_harness_push(harness.get(), depth_frame(16, 8, [](unsigned, unsigned) { return 1; }).release()),
+        GST_FLOW_ERROR);
+    g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    EXPECT_NE(message, nullptr);
+    gst_element_set_bus(harness->element, nullptr);
+}
