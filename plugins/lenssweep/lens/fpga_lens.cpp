@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "fpga_lens.h"
 
+#include "i2c_retry.h"
+
 #include <array>
 #include <utility>
 
@@ -11,7 +13,6 @@ namespace {
 
 using namespace sweep_registers;
 
-constexpr int tries = 3;
 /* An SMBus block of words from command k on is command 128 + k */
 constexpr std::uint8_t block_flag = 0x80;
 
@@ -38,28 +39,12 @@ FpgaLens::~FpgaLens()
 
 template <typename Transfer> auto FpgaLens::retry(Transfer transfer)
 {
-    for (int attempt = 1;; ++attempt) {
-        try {
-            return transfer();
-        } catch (const I2cError &) {
-            if (attempt == tries) {
-                stop_quietly();
-                throw;
-            }
-        }
-    }
+    return with_retries(transfer, [this] { stop_quietly(); });
 }
 
 void FpgaLens::stop_quietly() noexcept
 {
-    for (int attempt = 1; attempt <= tries; ++attempt) {
-        try {
-            bus_.write_word(static_cast<std::uint8_t>(Word::control), 0);
-            return;
-        } catch (const I2cError &) {
-            /* The next attempt, or nothing more that could be done. */
-        }
-    }
+    try_quietly([this] { bus_.write_word(static_cast<std::uint8_t>(Word::control), 0); });
 }
 
 std::uint16_t FpgaLens::read(Word word)

@@ -2,23 +2,27 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "lens_error.h"
+
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 
 namespace dff {
 
 /* A transfer that the other side did not acknowledge, or that the adapter could not do. */
-class I2cError : public std::runtime_error {
+class I2cError : public LensError {
 public:
-    using std::runtime_error::runtime_error;
+    using LensError::LensError;
 };
 
-/* One slave on an I2C bus, by the SMBus protocols that the sweep sequencer speaks. Every call throws
- * I2cError. */
+/* One slave on an I2C bus, by the SMBus protocols that lenses speak. Every call throws I2cError. */
 class I2cBus {
 public:
     virtual ~I2cBus() = default;
+
+    /* SMBus read byte data and write byte data. */
+    virtual std::uint8_t read_byte(std::uint8_t command) = 0;
+    virtual void write_byte(std::uint8_t command, std::uint8_t value) = 0;
 
     /* SMBus read word: 16 bits, low byte first. */
     virtual std::uint16_t read_word(std::uint8_t command) = 0;

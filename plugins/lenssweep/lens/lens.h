@@ -2,21 +2,15 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "lens_error.h"
+
 #include "optics/sweep_plan.h"
 
 #include <chrono>
 #include <cstdint>
-#include <stdexcept>
 #include <stop_token>
-#include <string>
 
 namespace dff {
-
-/* The lens, or what drives it, does not do what it was told. The text is for the user and says what to do. */
-class LensError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /* The sweep that a lens is asked for. */
 struct LensSweep {

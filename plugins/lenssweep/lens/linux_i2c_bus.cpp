@@ -62,6 +62,20 @@ void LinuxI2cBus::transfer(bool read, std::uint8_t command, std::uint32_t size, 
     }
 }
 
+std::uint8_t LinuxI2cBus::read_byte(std::uint8_t command)
+{
+    i2c_smbus_data data{};
+    transfer(true, command, I2C_SMBUS_BYTE_DATA, &data, "read byte");
+    return data.byte;
+}
+
+void LinuxI2cBus::write_byte(std::uint8_t command, std::uint8_t value)
+{
+    i2c_smbus_data data{};
+    data.byte = value;
+    transfer(false, command, I2C_SMBUS_BYTE_DATA, &data, "write byte");
+}
+
 std::uint16_t LinuxI2cBus::read_word(std::uint8_t command)
 {
     i2c_smbus_data data{};

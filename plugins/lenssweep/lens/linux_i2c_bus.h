@@ -17,6 +17,8 @@ public:
     LinuxI2cBus(const LinuxI2cBus &) = delete;
     LinuxI2cBus &operator=(const LinuxI2cBus &) = delete;
 
+    std::uint8_t read_byte(std::uint8_t command) override;
+    void write_byte(std::uint8_t command, std::uint8_t value) override;
     std::uint16_t read_word(std::uint8_t command) override;
     void write_word(std::uint8_t command, std::uint16_t value) override;
     void write_block(std::uint8_t command, std::span<const std::uint8_t> bytes) override;

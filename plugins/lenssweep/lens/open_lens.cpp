@@ -2,6 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "open_lens.h"
 
+#include "fpga_sweep_lens.h"
+#include "genicam_lens.h"
+#include "linux_i2c_bus.h"
+#include "max14574_lens.h"
+#include "v4l2_lens.h"
+
+#include <cstdlib>
+
 namespace dff {
 
 namespace {
@@ -16,14 +24,39 @@ public:
     int code(unsigned) const override { return -1; }
 };
 
+LensProfile load_profile(const std::string &file)
+{
+    if (!file.empty()) {
+        return LensProfile::load(file);
+    }
+    const char *folder = std::getenv("DFF_LENS_PROFILES");
+    return LensProfile::load(std::string(folder ? folder : LENS_PROFILES_DIR) +
+                             "/varioptic-C-C-39N0-250.yaml");
+}
+
 } // namespace
 
-std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &)
+std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings)
 {
-    if (uri.kind == LensKind::None) {
-        return std::make_unique<UnmovedLens>();
+    switch (uri.kind) {
+    case LensKind::Fpga:
+        return std::make_unique<FpgaSweepLens>(std::make_unique<LinuxI2cBus>(uri.device, uri.address),
+                                               load_profile(surroundings.profile));
+    case LensKind::Max14574:
+        return std::make_unique<Max14574Lens>(std::make_unique<LinuxI2cBus>(uri.device, uri.address),
+                                              load_profile(surroundings.profile));
+    case LensKind::GenICam:
+        if (!surroundings.features) {
+            throw LensError("the lens genicam:" + uri.feature +
+                            " is in a camera that lenssweepsrc has opened");
+        }
+        return std::make_unique<GenicamLens>(*surroundings.features, uri.feature);
+    case LensKind::V4l2:
+        return std::make_unique<V4l2Lens>(uri.device);
+    case LensKind::None:
+        break;
     }
-    throw LensError("lenses of this kind are not built yet");
+    return std::make_unique<UnmovedLens>();
 }
 
 } // namespace dff

@@ -15,8 +15,6 @@ namespace {
 using std::chrono::microseconds;
 using sweep_registers::Word;
 
-constexpr double lowest_volts = 24.4;
-constexpr double highest_volts = 69.9;
 constexpr int highest_code = 1023;
 constexpr std::size_t fewest_planes = 2;
 constexpr std::size_t most_planes = 64;
@@ -48,10 +46,10 @@ std::uint16_t word(microseconds time)
 
 std::uint16_t max14574_code(double volts)
 {
-    require(volts >= lowest_volts && volts <= highest_volts,
+    require(volts >= max14574_lowest_volts && volts <= max14574_highest_volts,
             std::to_string(volts) + " V is outside of the 24.4 to 69.9 V of the lens driver");
-    return static_cast<std::uint16_t>(
-        std::lround((volts - lowest_volts) / (highest_volts - lowest_volts) * highest_code));
+    return static_cast<std::uint16_t>(std::lround(
+        (volts - max14574_lowest_volts) / (max14574_highest_volts - max14574_lowest_volts) * highest_code));
 }
 
 void check(const SweepTable &table, const LensTiming &timing)

@@ -43,6 +43,10 @@ struct RegisterWrite {
     std::vector<std::uint16_t> values;
 };
 
+/* V rms of codes 0 and 1023 of the MAX14574. */
+constexpr double max14574_lowest_volts = 24.4;
+constexpr double max14574_highest_volts = 69.9;
+
 /* Code of the MAX14574 for a voltage: 10 bits over 24.4 to 69.9 V rms. Throws std::invalid_argument outside
  * of them. */
 std::uint16_t max14574_code(double volts);

@@ -28,6 +28,12 @@ public:
 
     static constexpr std::uint8_t number(Word word) { return static_cast<std::uint8_t>(word); }
 
+    std::uint8_t read_byte(std::uint8_t) override { throw dff::I2cError("the sequencer has words only"); }
+    void write_byte(std::uint8_t, std::uint8_t) override
+    {
+        throw dff::I2cError("the sequencer has words only");
+    }
+
     std::uint16_t read_word(std::uint8_t command) override
     {
         fail_if_asked();

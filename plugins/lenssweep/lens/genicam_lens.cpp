@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "genicam_lens.h"
+
+#include "interruptible_sleep.h"
+#include "uncalibrated_positions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace dff {
+
+namespace {
+
+constexpr std::chrono::milliseconds poll_interval{2};
+constexpr std::chrono::seconds longest_move{5};
+
+constexpr const char *calibrated_feature = "FocalPower";
+constexpr const char *selector = "OpticControllerSelector";
+constexpr const char *initialize = "OpticControllerInitialize";
+constexpr const char *controller_status = "OpticControllerStatus";
+constexpr const char *focus_status = "FocusStatus";
+
+/* What the camera throws becomes an error of the lens. */
+template <typename Access> auto access(Access use)
+{
+    try {
+        return use();
+    } catch (const LensError &) {
+        throw;
+    } catch (const std::runtime_error &error) {
+        throw LensError(std::string("the lens in the camera cannot be moved: ") + error.what());
+    }
+}
+
+} // namespace
+
+GenicamLens::GenicamLens(CameraFeatures &camera, std::string feature)
+    : camera_(camera), feature_(std::move(feature))
+{
+    access([this] {
+        if (camera_.has(selector)) {
+            /* A camera has one lens; what else is selected here is left over from another program. */
+            camera_.set_enumeration(selector, camera_.enumeration_values(selector).at(0));
+        }
+        if (!camera_.has(feature_)) {
+            throw LensError("the camera has no feature " + feature_ +
+                            " to focus by. Look for its category OpticControl with arv-tool-0.8 features");
+        }
+        integer_ = camera_.is_integer(feature_);
+    });
+}
+
+bool GenicamLens::calibrated() const
+{
+    return feature_ == calibrated_feature;
+}
+
+void GenicamLens::prepare(const LensSweep &sweep)
+{
+    const auto [lowest, highest] = access([this]() -> std::pair<double, double> {
+        if (integer_) {
+            return camera_.integer_range(feature_);
+        }
+        return camera_.float_range(feature_);
+    });
+    std::vector<double> values;
+    for (unsigned plane = 0; plane < sweep.plan.planes(); ++plane) {
+        values.push_back(calibrated() ? sweep.plan.power(plane)
+                                      : std::lerp(lowest, highest, relative_nearness(sweep.plan, plane)));
+        if (integer_) {
+            values.back() = std::round(values.back());
+        }
+        if (values.back() < lowest || values.back() > highest) {
+            std::ostringstream text;
+            text << feature_ << " of the camera is " << lowest << " to " << highest << ", not "
+                 << values.back();
+            throw std::invalid_argument(text.str());
+        }
+    }
+    require_different(values);
+    values_ = std::move(values);
+}
+
+GenicamLens::Readiness GenicamLens::readiness(const std::string &status)
+{
+    const std::string value = access([&] { return camera_.get_enumeration(status); });
+    if (value == "Ready" || value == "NotBusy" || value == "Idle") {
+        return Readiness::Ready;
+    }
+    if (value == "NotInitialized") {
+        return Readiness::NotInitialized;
+    }
+    return value == "Error" || value == "NotConnected" ? Readiness::Failed : Readiness::Busy;
+}
+
+bool GenicamLens::wait_ready(const std::string &status, const std::stop_token &stop)
+{
+    if (!access([&] { return camera_.has(status); })) {
+        return !stop.stop_requested();
+    }
+    const auto deadline = std::chrono::steady_clock::now() + longest_move;
+    for (;;) {
+        const auto now = readiness(status);
+        if (now == Readiness::Ready) {
+            return !stop.stop_requested();
+        }
+        if (now == Readiness::Failed || std::chrono::steady_clock::now() >= deadline) {
+            throw LensError("the lens in the camera " +
+                            std::string(now == Readiness::Failed ? "has failed" : "does not come to rest") +
+                            ": " + status + " is " + access([&] { return camera_.get_enumeration(status); }));
+        }
+        if (!sleep_until(std::chrono::steady_clock::now() + poll_interval, stop)) {
+            return false;
+        }
+    }
+}
+
+void GenicamLens::start()
+{
+    const bool initialized = access([this] { return camera_.has(controller_status); }) &&
+                             readiness(controller_status) == Readiness::Ready;
+    if (!initialized && access([this] { return camera_.has(initialize); })) {
+        access([this] { camera_.execute(initialize); });
+        wait_ready(controller_status, {});
+    }
+}
+
+int GenicamLens::code(unsigned plane) const
+{
+    return integer_ ? static_cast<int>(values_.at(plane)) : -1;
+}
+
+void GenicamLens::move_to(unsigned plane)
+{
+    const double value = values_.at(plane);
+    access([&] {
+        if (integer_) {
+            camera_.set_integer(feature_, static_cast<std::int64_t>(value));
+        } else {
+            camera_.set_float(feature_, value);
+        }
+    });
+}
+
+bool GenicamLens::wait_settled(const std::stop_token &stop)
+{
+    return wait_ready(focus_status, stop);
+}
+
+} // namespace dff

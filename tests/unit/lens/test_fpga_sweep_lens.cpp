@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "fpga_sweep_lens.h"
+
+#include "fake_i2c_bus.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+using namespace dff::sweep_registers;
+using namespace std::chrono_literals;
+
+namespace {
+
+I2cRecord answering_sequencer()
+{
+    I2cRecord bus;
+    bus.values = {{static_cast<unsigned>(Word::identity), identity_default},
+                  {static_cast<unsigned>(Word::version), version_default},
+                  {static_cast<unsigned>(Word::lens_gap_us), 291U},
+                  {static_cast<unsigned>(Word::lens_stage_us), 146U}};
+    return bus;
+}
+
+dff::LensProfile shipped()
+{
+    return dff::LensProfile::load(SHIPPED_PROFILE);
+}
+
+bool has(const I2cRecord &bus, const std::string &transfer)
+{
+    return std::find(bus.transfers.begin(), bus.transfers.end(), transfer) != bus.transfers.end();
+}
+
+dff::LensProfile with_overdrive()
+{
+    const auto path =
+        std::filesystem::temp_directory_path() / ("dff-overdrive-" + std::to_string(getpid()) + ".yaml");
+    std::ofstream(path)
+        << "%YAML:1.0\n---\nlens: \"test\"\nnominal: 1\npower_at_infinity: 0\nlens_power: [ 0, 10 ]\n"
+           "volts: [ 30, 60 ]\nsettle_us: 100\noverdrive: 0.5\noverdrive_delay_us: 9\n";
+    const auto profile = dff::LensProfile::load(path);
+    std::filesystem::remove(path);
+    return profile;
+}
+
+} // namespace
+
+TEST(FpgaSweepLens, plan_becomes_the_table_of_the_sequencer)
+{
+    I2cRecord bus = answering_sequencer();
+    dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), shipped());
+    lens.prepare({dff::SweepPlan::even(3, 15.0, -5.0), 6400us, 6000us, true});
+    /* planes, shape, period, exposure, flyback, width, opto on and off: words from 0x0d on, low byte first */
+    EXPECT_TRUE(has(bus, "block8d=0300000000197017000064000000"
+                         "0000"));
+    /* plane, code A, delay, code B, settle: the shipped profile has no overdrive, and settles longer than 109
+     * us */
+    EXPECT_TRUE(has(bus, "block99=0000ff030000ff036d00"));
+    EXPECT_TRUE(has(bus, "block99=010000020000"
+                         "00026d00"));
+    EXPECT_TRUE(has(bus, "w0c=0001"));
+    EXPECT_EQ(lens.code(1), 512);
+    lens.start();
+    EXPECT_EQ(bus.transfers.back(), "w02=0003");
+    lens.stop();
+    EXPECT_EQ(bus.transfers.back(), "w02=0000");
+}
+
+TEST(FpgaSweepLens, first_code_of_a_plane_goes_beyond_the_second)
+{
+    const auto steps = dff::plane_steps(dff::SweepPlan::even(3, 10.0, 0.0), with_overdrive());
+    ASSERT_EQ(steps.size(), 3U);
+    EXPECT_DOUBLE_EQ(steps[0].overdrive_volts, 69.9); /* 60 + 15, as far as the driver can */
+    EXPECT_DOUBLE_EQ(steps[0].hold_volts, 60.0);
+    EXPECT_DOUBLE_EQ(steps[1].overdrive_volts, 37.5);
+    EXPECT_DOUBLE_EQ(steps[1].hold_volts, 45.0);
+    EXPECT_DOUBLE_EQ(steps[2].overdrive_volts, 24.4);
+    EXPECT_DOUBLE_EQ(steps[2].hold_volts, 30.0);
+    EXPECT_EQ(steps[1].delay, 9us);
+    EXPECT_EQ(steps[1].settle, 100us);
+}
+
+TEST(FpgaSweepLens, exposure_left_open_is_what_the_lens_leaves)
+{
+    I2cRecord bus = answering_sequencer();
+    dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), with_overdrive());
+    lens.prepare({dff::SweepPlan::even(2, 10.0, 0.0), 6400us, 0us, false}); /* 6400 - 291 - 9 - 100 = 6000 */
+    EXPECT_TRUE(has(bus, "block8d=0200000000197017000064000000"
+                         "0000"));
+}
+
+TEST(FpgaSweepLens, times_and_powers_that_cannot_be_met_are_refused_with_the_rule)
+{
+    I2cRecord bus = answering_sequencer();
+    dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), shipped());
+    EXPECT_THROW(lens.prepare({dff::SweepPlan::even(3, 5.0, 0.0), 6400us, 6200us}), std::invalid_argument);
+    EXPECT_THROW(lens.prepare({dff::SweepPlan::even(3, 20.0, 0.0), 6400us, 6000us}), std::invalid_argument);
+}
+
+TEST(FpgaSweepLens, sequencer_that_stopped_by_itself_is_an_error_that_says_why)
+{
+    I2cRecord bus = answering_sequencer();
+    dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), shipped());
+    EXPECT_NO_THROW(lens.check());
+    bus.values[static_cast<unsigned>(Word::status)] = status_failed.mask();
+    bus.values[static_cast<unsigned>(Word::error)] = error_lens_nack.mask();
+    try {
+        lens.check();
+        FAIL() << "no error";
+    } catch (const dff::LensError &error) {
+        EXPECT_NE(std::string(error.what()).find("does not answer"), std::string::npos);
+    }
+}
+
+TEST(FpgaSweepLens, sweep_is_stopped_when_the_lens_is_let_go)
+{
+    I2cRecord bus = answering_sequencer();
+    {
+        dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), shipped());
+        lens.start();
+    }
+    EXPECT_EQ(bus.transfers.back(), "w02=0000");
+}

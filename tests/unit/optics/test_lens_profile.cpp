@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "optics/lens_profile.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace {
+
+const std::string good = "lens: \"test\"\nnominal: 0\npower_at_infinity: 1.0\nlens_power: [ 0, 2.0, 6.0 ]\n"
+                         "volts: [ 30, 40.0, 50.0 ]\nsettle_us: 1500\n";
+
+/* A profile file with these lines, gone afterwards. */
+class ProfileFile {
+public:
+    explicit ProfileFile(const std::string &lines)
+        : path_(std::filesystem::temp_directory_path() /
+                ("dff-profile-" + std::to_string(getpid()) + ".yaml"))
+    {
+        std::ofstream(path_) << "%YAML:1.0\n---\n" << lines;
+    }
+    ~ProfileFile() { std::filesystem::remove(path_); }
+    std::string path() const { return path_.string(); }
+
+private:
+    std::filesystem::path path_;
+};
+
+std::string fault_of(const std::string &lines)
+{
+    const ProfileFile file(lines);
+    try {
+        dff::LensProfile::load(file.path());
+    } catch (const std::invalid_argument &error) {
+        EXPECT_NE(std::string(error.what()).find(file.path()), std::string::npos) << error.what();
+        return error.what();
+    }
+    return "";
+}
+
+std::string with(std::string from, const std::string &line, const std::string &other)
+{
+    return from.replace(from.find(line), line.size(), other);
+}
+
+} // namespace
+
+TEST(LensProfile, volts_lie_on_straight_lines_between_the_given_ones)
+{
+    const auto profile = dff::LensProfile::load(ProfileFile(good).path());
+    EXPECT_EQ(profile.lens(), "test");
+    EXPECT_FALSE(profile.nominal());
+    EXPECT_DOUBLE_EQ(profile.farthest(), -1.0);
+    EXPECT_DOUBLE_EQ(profile.nearest(), 5.0);
+    EXPECT_DOUBLE_EQ(profile.volts(-1.0), 30.0);
+    EXPECT_DOUBLE_EQ(profile.volts(0.0), 35.0);
+    EXPECT_DOUBLE_EQ(profile.volts(1.0), 40.0);
+    EXPECT_DOUBLE_EQ(profile.volts(4.0), 47.5);
+    EXPECT_DOUBLE_EQ(profile.volts(5.0), 50.0);
+    EXPECT_EQ(profile.settle().count(), 1500);
+    EXPECT_EQ(profile.overdrive(), 0.0);
+    EXPECT_EQ(profile.overdrive_delay().count(), 0);
+}
+
+TEST(LensProfile, nearer_always_takes_more_volts)
+{
+    const auto profile = dff::LensProfile::load(ProfileFile(good).path());
+    for (double vergence = -1.0; vergence < 4.99; vergence += 0.01) {
+        EXPECT_LT(profile.volts(vergence), profile.volts(vergence + 0.01));
+    }
+}
+
+TEST(LensProfile, vergence_that_the_lens_does_not_reach_is_an_error_with_the_range)
+{
+    const auto profile = dff::LensProfile::load(ProfileFile(good).path());
+    for (const double vergence : {-1.1, 5.1, 1e9}) {
+        try {
+            profile.volts(vergence);
+            ADD_FAILURE() << vergence;
+        } catch (const std::invalid_argument &error) {
+            EXPECT_NE(std::string(error.what()).find("reaches -1 to 5 dioptres"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
+TEST(LensProfile, faults_of_a_file_are_told_with_its_name)
+{
+    EXPECT_EQ(fault_of(good), "");
+    EXPECT_NE(
+        fault_of(with(good, "volts: [ 30, 40.0, 50.0 ]", "volts: [ 30, 50.0, 40.0 ]")).find("volts must"),
+        std::string::npos);
+    EXPECT_NE(
+        fault_of(with(good, "volts: [ 30, 40.0, 50.0 ]", "volts: [ 30, 50.0 ]")).find("differ in length"),
+        std::string::npos);
+    EXPECT_NE(fault_of(with(good, "lens_power: [ 0, 2.0, 6.0 ]", "lens_power: [ 0, 0, x ]"))
+                  .find("lens_power must"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with(good, "settle_us: 1500", "settle_us: -1")).find("settle_us"), std::string::npos);
+    EXPECT_NE(fault_of(with(good, "nominal: 0\n", "")).find("nominal"), std::string::npos);
+    EXPECT_NE(fault_of("lens: [ \"never closed\n").find("profile"), std::string::npos);
+    EXPECT_THROW(dff::LensProfile::load("/does/not/exist.yaml"), std::invalid_argument);
+    EXPECT_THROW(dff::LensProfile::load("/"), std::invalid_argument);
+}
+
+TEST(LensProfile, the_shipped_one_is_nominal_and_within_what_the_driver_can)
+{
+    const auto profile = dff::LensProfile::load(SHIPPED_PROFILE);
+    EXPECT_TRUE(profile.nominal());
+    EXPECT_GE(profile.volts(profile.farthest()), 24.4);
+    EXPECT_LE(profile.volts(profile.nearest()), 69.9);
+    EXPECT_LE(profile.farthest(), 0.0);
+    EXPECT_GE(profile.nearest(), 5.0);
+}
