@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "capture.h"
+#include "mount.h"
+
+#include <gst/rtsp-server/rtsp-server.h>
+
+namespace dff {
+
+/* Makes the media of a mount: one for all its clients, whatever stands behind the path of the URL. `capture`
+ * outlives it. With `tcp_only`, clients may not ask for UDP. */
+ObjectPointer<GstRTSPMediaFactory> make_factory(const Mount &mount, Capture &capture, bool tcp_only);
+
+} // namespace dff
