@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/* Who is let in. */
+#include "receiver.h"
+#include "server_process.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace {
+
+const std::string quick_depth =
+    "videotestsrc is-live=true ! video/x-raw,format=GRAY16_LE,width=32,height=32,framerate=20/1 ! identity "
+    "name=depth";
+
+std::string receive(const std::string &url)
+{
+    return "rtspsrc latency=100 protocols=tcp tls-validation-flags=0 location=" + url +
+           " ! appsink name=sink sync=false";
+}
+
+/* A folder that goes with the test. */
+class Folder {
+public:
+    Folder() : path_(g_dir_make_tmp("dff-rtsp-XXXXXX", nullptr)) {}
+    ~Folder() { std::filesystem::remove_all(path_); }
+    Folder(const Folder &) = delete;
+    Folder &operator=(const Folder &) = delete;
+
+    std::string file(const std::string &name) const { return path_ / name; }
+
+private:
+    std::filesystem::path path_;
+};
+
+TEST(Access, accounts_of_a_file_and_of_the_command_line_are_let_in)
+{
+    const Folder folder;
+    std::ofstream(folder.file("accounts")) << "[accounts]\nanna=se:cret\n";
+    ServerProcess server(quick_depth, {"--accounts", folder.file("accounts"), "--account", "bert:other"});
+
+    EXPECT_NE(Receiver(receive(server.url("/depth", "anna:se%3Acret"))).next(), nullptr);
+    EXPECT_NE(Receiver(receive(server.url("/depth", "bert:other"))).next(), nullptr);
+}
+
+TEST(Access, a_wrong_password_is_refused)
+{
+    ServerProcess server(quick_depth, {"--account", "anna:secret"});
+
+    for (const char *account : {"anna:wrong", "bert:secret", ""}) {
+        Receiver client(receive(server.url("/depth", account)));
+        EXPECT_NE(client.error().find("Unauthorized"), std::string::npos) << account;
+    }
+    EXPECT_EQ(server.count_in_log("The source is started"), 0U);
+}
+
+TEST(Access, one_client_too_many_is_told_so)
+{
+    ServerProcess server(quick_depth, {"--max-clients", "2"});
+    Receiver first(receive(server.url("/depth")));
+    Receiver second(receive(server.url("/depth")));
+    ASSERT_NE(first.next(), nullptr);
+    ASSERT_NE(second.next(), nullptr);
+
+    {
+        Receiver third(receive(server.url("/depth")));
+        EXPECT_NE(third.error().find("503"), std::string::npos);
+    }
+    EXPECT_NE(first.next(), nullptr);
+}
+
+TEST(Access, a_certificate_makes_it_rtsps)
+{
+    const Folder folder;
+    const std::string pem = folder.file("server.pem");
+    const std::string command =
+        "openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=localhost -days 2 -keyout " + pem +
+        ".key -out " + pem + ".crt 2>/dev/null && cat " + pem + ".key " + pem + ".crt >" + pem;
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    ServerProcess server(quick_depth, {"--certificate", pem, "--account", "anna:secret"});
+
+    EXPECT_EQ(server.url("/depth").rfind("rtsps://", 0), 0U);
+    EXPECT_NE(Receiver(receive(server.url("/depth", "anna:secret"))).next(), nullptr);
+    EXPECT_NE(Receiver(receive(server.url("/depth", "anna:wrong"))).error(), "");
+}
+
+} // namespace

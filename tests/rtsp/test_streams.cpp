@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/* What arrives at clients. */
+#include "receiver.h"
+#include "server_process.h"
+
+#include <cmath>
+#include <gst/dff/dff.h>
+#include <gtest/gtest.h>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace {
+
+/* Small, so that the slowest machine keeps up. */
+const std::string sweeps = "lenssweeptestsrc name=camera seed=7 planes=4 rate=5 noise=moderate motion=3 ";
+const std::string small = "! video/x-raw,format=I420,width=96,height=64 ";
+const std::string depth_of_stacks = "! focalstackmux ! dffdepth ";
+
+std::string live_depth(const std::string &name)
+{
+    return sweeps + "is-live=true " + small + depth_of_stacks + "name=" + name;
+}
+
+std::string receive_depth(const ServerProcess &server, const std::string &protocol)
+{
+    return "rtspsrc latency=300 protocols=" + protocol + " location=" + server.url("/depth") +
+           " ! rtpj2kdepay ! jpeg2000parse ! avdec_jpeg2000 ! appsink name=sink sync=false";
+}
+
+std::string checksum(GstBuffer *buffer)
+{
+    GstMapInfo map;
+    gst_buffer_map(buffer, &map, GST_MAP_READ);
+    g_autofree char *sum = g_compute_checksum_for_data(G_CHECKSUM_SHA256, map.data, map.size);
+    gst_buffer_unmap(buffer, &map);
+    return sum;
+}
+
+/* Depth of the first sweeps, computed here. */
+std::vector<std::string> true_checksums(unsigned count)
+{
+    Receiver local(sweeps + small + depth_of_stacks + "! appsink name=sink sync=false");
+    std::vector<std::string> checksums;
+    for (unsigned k = 0; k < count; k++)
+        checksums.push_back(checksum(local.next_buffer()));
+    return checksums;
+}
+
+class DepthArrives : public testing::TestWithParam<std::string> {};
+
+TEST_P(DepthArrives, bit_for_bit_with_its_meta)
+{
+    constexpr unsigned frames = 8;
+    ServerProcess server(live_depth("depth"));
+    Receiver client(receive_depth(server, GetParam()));
+
+    guint64 last = 0;
+    std::vector<std::pair<guint64, std::string>> received;
+    for (unsigned k = 0; k < frames; k++) {
+        GstBuffer *buffer = client.next_buffer();
+        ASSERT_NE(buffer, nullptr) << "frame " << k;
+        const GstDepthMeta *depth = gst_buffer_get_depth_meta(buffer);
+        ASSERT_NE(depth, nullptr) << "frame " << k;
+        EXPECT_EQ(depth->unit, GST_DEPTH_UNIT_DIOPTRE);
+        EXPECT_EQ(depth->near, 5.0);
+        last = depth->sequence;
+        received.emplace_back(depth->sequence, checksum(buffer));
+    }
+
+    const auto expected = true_checksums(static_cast<unsigned>(last) + 1);
+    for (const auto &[sequence, sum] : received)
+        EXPECT_EQ(sum, expected.at(sequence)) << "stack " << sequence;
+}
+
+INSTANTIATE_TEST_SUITE_P(Protocols, DepthArrives, testing::Values("tcp", "udp"),
+                         [](const auto &instance) { return instance.param; });
+
+TEST(Streams, sdp_says_what_the_depth_means)
+{
+    ServerProcess server(live_depth("depth"));
+    Receiver client("rtspsrc protocols=tcp location=" + server.url("/depth") +
+                    " ! appsink name=sink sync=false");
+
+    GstSample *sample = client.next();
+    ASSERT_NE(sample, nullptr);
+    const GstStructure *caps = gst_caps_get_structure(gst_sample_get_caps(sample), 0);
+    EXPECT_STREQ(gst_structure_get_string(caps, "a-depth-unit"), "dioptre");
+    EXPECT_STREQ(gst_structure_get_string(caps, "a-depth-near"), "5");
+    EXPECT_STREQ(gst_structure_get_string(caps, "a-depth-far"), "0");
+    const char *scale = gst_structure_get_string(caps, "a-depth-scale");
+    ASSERT_NE(scale, nullptr);
+    EXPECT_DOUBLE_EQ(g_ascii_strtod(scale, nullptr), -5.0 / 65534);
+}
+
+/* The sender's clock at a frame, as RTCP tells it; nothing before the first sender report. */
+std::optional<GstClockTime> sender_time(GstBuffer *buffer)
+{
+    g_autoptr(GstCaps) ntp = gst_caps_new_empty_simple("timestamp/x-ntp");
+    const GstReferenceTimestampMeta *meta = gst_buffer_get_reference_timestamp_meta(buffer, ntp);
+    return meta ? std::optional(meta->timestamp) : std::nullopt;
+}
+
+/* Colour made of the depth itself, so that the same frames are known on both sides. */
+TEST(Streams, colour_and_depth_are_in_step)
+{
+    ServerProcess server(sweeps + "is-live=true " + small + depth_of_stacks +
+                         "! tee name=depth  depth. ! queue ! identity name=aif");
+    Receiver client(
+        "rtspsrc name=source latency=300 add-reference-timestamp-meta=true location=" +
+        server.url("/stream") +
+        "  source. ! application/x-rtp,encoding-name=H264 ! rtph264depay ! appsink name=color sync=false"
+        "  source. ! application/x-rtp,encoding-name=JPEG2000 ! rtpj2kdepay ! appsink name=depth sync=false");
+
+    std::map<guint64, GstClockTime> times;
+    unsigned compared = 0;
+    for (unsigned k = 0; k < 100 && compared < 3; k++) {
+        for (const char *sink : {"color", "depth"}) {
+            GstBuffer *buffer = client.next_buffer(sink);
+            ASSERT_NE(buffer, nullptr) << sink << " " << k;
+            const GstDepthMeta *depth = gst_buffer_get_depth_meta(buffer);
+            ASSERT_NE(depth, nullptr) << sink << " " << k;
+            const auto time = sender_time(buffer);
+            if (!time)
+                continue;
+            const auto [other, first] = times.emplace(depth->sequence, *time);
+            if (first)
+                continue;
+            compared++;
+            EXPECT_LT(std::abs(GST_CLOCK_DIFF(other->second, *time)), 100 * GST_USECOND)
+                << "stack " << depth->sequence;
+        }
+    }
+    EXPECT_GE(compared, 3U);
+}
+
+TEST(Streams, planes_give_the_same_depth_on_another_machine)
+{
+    ServerProcess server(sweeps + "is-live=true " + small + "! identity name=planes");
+    Receiver client("rtspsrc latency=300 protocols=tcp location=" + server.url("/planes") +
+                    " ! rtpgstdepay " + depth_of_stacks + "! appsink name=sink sync=false");
+
+    std::vector<std::pair<guint64, std::string>> received;
+    for (unsigned k = 0; k < 4; k++) {
+        GstBuffer *buffer = client.next_buffer();
+        ASSERT_NE(buffer, nullptr);
+        received.emplace_back(gst_buffer_get_depth_meta(buffer)->sweep, checksum(buffer));
+    }
+
+    const auto expected = true_checksums(static_cast<unsigned>(received.back().first) + 1);
+    for (const auto &[sweep, sum] : received)
+        EXPECT_EQ(sum, expected.at(sweep)) << "sweep " << sweep;
+}
+
+/* The source ends after three sweeps each time; the client goes on and on. */
+TEST(Streams, a_source_that_ends_is_started_again_for_the_same_client)
+{
+    ServerProcess server(sweeps + "is-live=true num-buffers=12 " + small + depth_of_stacks + "name=depth");
+    Receiver client(receive_depth(server, "tcp"));
+
+    for (unsigned k = 0; k < 7; k++)
+        ASSERT_NE(client.next_buffer(), nullptr) << "frame " << k;
+    EXPECT_GE(server.count_in_log("The source is started"), 2U);
+}
+
+TEST(Streams, one_capture_serves_all_and_stops_after_the_last)
+{
+    ServerProcess server(live_depth("depth"));
+    auto first = std::make_unique<Receiver>(receive_depth(server, "tcp"));
+    auto second = std::make_unique<Receiver>(receive_depth(server, "tcp"));
+    ASSERT_NE(first->next_buffer(), nullptr);
+    ASSERT_NE(second->next_buffer(), nullptr);
+    EXPECT_EQ(server.count_in_log("The source is started"), 1U);
+
+    first.reset();
+    ASSERT_NE(second->next_buffer(), nullptr);
+    EXPECT_EQ(server.count_in_log("the source is stopped"), 0U);
+    second.reset();
+    EXPECT_TRUE(server.wait_for_log("the source is stopped", 1));
+
+    Receiver third(receive_depth(server, "tcp"));
+    EXPECT_NE(third.next_buffer(), nullptr);
+}
+
+} // namespace
