@@ -5,15 +5,17 @@
 
 run_packages=(
     gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
-    gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd)
+    gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd
+    glib-networking)
 build_packages=(
     build-essential pkg-config meson ninja-build
-    libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gobject-introspection libgirepository1.0-dev
+    libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgstrtspserver-1.0-dev gobject-introspection libgirepository1.0-dev
     ocl-icd-opencl-dev opencl-clhpp-headers opencl-c-headers
     libopencv-dev libaravis-dev libgpiod-dev)
 test_packages=(
     libgtest-dev libasan8 libubsan1 clang-format clang-tidy
-    python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv)
+    python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
+    iproute2 util-linux openssl ffmpeg vlc-bin vlc-plugin-base)
 
 # say TEXT: one line about what happens now, with the minutes and seconds since the start.
 say() {
