@@ -1,23 +1,20 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-#include "lines.h"
+#include "gpio_lines.h"
+
+#include "descriptor_wait.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <gpiod.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <system_error>
-#include <unistd.h>
 
 namespace dff {
 
 namespace {
 
 constexpr const char *consumer = "gst-plugins-dff";
-/* The millisecond count that poll() takes holds it. */
-constexpr std::chrono::nanoseconds longest_wait = std::chrono::hours{24};
 
 std::string reason()
 {
@@ -89,32 +86,6 @@ private:
     Line line_;
 };
 
-/* Can be raised from any thread, and waited for beside other descriptors. */
-class Signal {
-public:
-    Signal() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))
-    {
-        if (descriptor_ < 0) {
-            throw LineError("cannot make an event descriptor: " + reason());
-        }
-    }
-    ~Signal() { close(descriptor_); }
-    Signal(const Signal &) = delete;
-    Signal &operator=(const Signal &) = delete;
-
-    int descriptor() const { return descriptor_; }
-    void raise() const { eventfd_write(descriptor_, 1); }
-
-    void lower() const
-    {
-        eventfd_t count = 0;
-        eventfd_read(descriptor_, &count);
-    }
-
-private:
-    int descriptor_;
-};
-
 class GpiodEdgeLine : public EdgeLine {
 public:
     explicit GpiodEdgeLine(const std::string &name) : name_(name), line_(find(name))
@@ -127,21 +98,11 @@ public:
 
     std::optional<LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds timeout) override
     {
-        stopped_.lower();
-        const std::stop_callback wake(stop, [this] { stopped_.raise(); });
-        std::array<pollfd, 2> waited{
-            {{gpiod_line_event_get_fd(line_.get()), POLLIN, 0}, {stopped_.descriptor(), POLLIN, 0}}};
-        const auto deadline = std::chrono::steady_clock::now() + std::min(timeout, longest_wait);
-        int ready = 0;
-        do {
-            const auto left =
-                std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-            ready = poll(waited.data(), waited.size(), std::max(0, static_cast<int>(left.count())));
-        } while (ready < 0 && errno == EINTR);
-        if (ready < 0 || (waited[0].revents & (POLLERR | POLLHUP | POLLNVAL))) {
+        const short seen = woken_.wait(gpiod_line_event_get_fd(line_.get()), stop, timeout);
+        if (seen & (POLLERR | POLLHUP | POLLNVAL)) {
             throw LineError("cannot wait for edges of the GPIO line \"" + name_ + "\": its chip has gone");
         }
-        if (stop.stop_requested() || !(waited[0].revents & POLLIN)) {
+        if (!(seen & POLLIN)) {
             return std::nullopt;
         }
         gpiod_line_event event{};
@@ -155,17 +116,17 @@ public:
 private:
     std::string name_;
     Line line_;
-    Signal stopped_;
+    DescriptorWait woken_;
 };
 
 } // namespace
 
-std::unique_ptr<OutputLine> open_output_line(const std::string &name)
+std::unique_ptr<OutputLine> open_gpio_output_line(const std::string &name)
 {
     return std::make_unique<GpiodOutputLine>(name);
 }
 
-std::unique_ptr<EdgeLine> open_edge_line(const std::string &name)
+std::unique_ptr<EdgeLine> open_gpio_edge_line(const std::string &name)
 {
     return std::make_unique<GpiodEdgeLine>(name);
 }

@@ -45,9 +45,10 @@ public:
     virtual std::optional<LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds timeout) = 0;
 };
 
-/* Takes a line, called by its name ("SYNC"), or by chip and offset ("gpiochip0:5", "/dev/gpiochip0:5"). An
- * output begins low; an edge line is pulled down, where the chip can, so that a cable that is not plugged in
- * gives no edges. Throws LineError; always, in a build without libgpiod. */
+/* Takes a line, called by its name ("SYNC"), by chip and offset ("gpiochip0:5", "/dev/gpiochip0:5"), or, for
+ * rigs without GPIO, by the socket of another process ("socket:/run/rig/sync", see socket_lines.h). An output
+ * begins low; an edge line is pulled down, where the chip can, so that a cable that is not plugged in gives
+ * no edges. Throws LineError; always for a GPIO line, in a build without libgpiod. */
 std::unique_ptr<OutputLine> open_output_line(const std::string &name);
 std::unique_ptr<EdgeLine> open_edge_line(const std::string &name);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-#include "lines.h"
+#include "gpio_lines.h"
 
 namespace dff {
 
@@ -10,12 +10,12 @@ constexpr const char *missing = "this build has no GPIO lines: install libgpiod-
 
 } // namespace
 
-std::unique_ptr<OutputLine> open_output_line(const std::string &)
+std::unique_ptr<OutputLine> open_gpio_output_line(const std::string &)
 {
     throw LineError(missing);
 }
 
-std::unique_ptr<EdgeLine> open_edge_line(const std::string &)
+std::unique_ptr<EdgeLine> open_gpio_edge_line(const std::string &)
 {
     throw LineError(missing);
 }

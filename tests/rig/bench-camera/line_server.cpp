@@ -25,7 +25,7 @@ int listen_at(const std::string &path)
         throw std::system_error(ENAMETOOLONG, std::generic_category(), path);
     std::memcpy(address.sun_path, path.data(), path.size());
     unlink(path.c_str());
-    const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+    const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0 || bind(fd, reinterpret_cast<sockaddr *>(&address), sizeof address) != 0 ||
         listen(fd, 4) != 0) {
         const int error = errno;
@@ -56,6 +56,8 @@ LineServer::~LineServer()
 void LineServer::send(bool level, uint64_t time_ns)
 {
     const std::string message = std::to_string(level ? 1 : 0) + ' ' + std::to_string(time_ns);
+    /* Who has connected before an edge hears it. */
+    accept_clients();
     const std::scoped_lock lock(mutex_);
     /* A client that does not listen loses edges, as it would from the kernel. */
     for (const int fd : clients_)
@@ -70,42 +72,48 @@ void LineServer::set_level(bool level)
     on_level_(level);
 }
 
-void LineServer::accept_client()
+void LineServer::accept_clients()
 {
-    const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     const std::scoped_lock lock(mutex_);
-    if (fd >= 0)
+    for (int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC); fd >= 0;
+         fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC))
         clients_.push_back(fd);
 }
 
-void LineServer::read_client(size_t index)
+std::vector<int> LineServer::clients()
+{
+    const std::scoped_lock lock(mutex_);
+    return clients_;
+}
+
+void LineServer::read_client(int client)
 {
     std::array<char, 64> message{};
-    if (recv(clients_[index], message.data(), message.size() - 1, MSG_DONTWAIT) > 0) {
+    if (recv(client, message.data(), message.size() - 1, MSG_DONTWAIT) > 0) {
         set_level(message[0] == '1');
         return;
     }
     set_level(false);
     const std::scoped_lock lock(mutex_);
-    close(clients_[index]);
-    clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
+    std::erase(clients_, client);
+    close(client);
 }
 
 void LineServer::serve(const std::stop_token &stop)
 {
     while (!stop.stop_requested()) {
         std::vector<pollfd> waiting;
-        for (const int fd : clients_)
+        for (const int fd : clients())
             waiting.push_back({fd, POLLIN, 0});
         waiting.push_back({listener_, POLLIN, 0});
         if (poll(waiting.data(), waiting.size(), poll_ms) <= 0)
             continue;
-        /* From the last to the first: read_client() may take one out. */
-        for (size_t i = waiting.size() - 1; i-- > 0;)
-            if (waiting[i].revents != 0)
-                read_client(i);
         if (waiting.back().revents != 0)
-            accept_client();
+            accept_clients();
+        waiting.pop_back();
+        for (const pollfd &client : waiting)
+            if (client.revents != 0)
+                read_client(client.fd);
     }
 }
 

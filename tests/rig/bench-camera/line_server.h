@@ -27,8 +27,9 @@ public:
 
 private:
     void serve(const std::stop_token &stop);
-    void accept_client();
-    void read_client(size_t index);
+    void accept_clients();
+    std::vector<int> clients();
+    void read_client(int client);
     void set_level(bool level);
 
     std::string path_;
@@ -36,7 +37,7 @@ private:
     int listener_;
     bool level_ = false;       /* of the serving thread */
     std::mutex mutex_;         /* guards clients_; nothing is locked within */
-    std::vector<int> clients_; /* changed by the serving thread only */
+    std::vector<int> clients_; /* closed by the serving thread only */
     std::jthread thread_;
 };
 
