@@ -176,6 +176,40 @@ TEST(TagErrors, rising_powers_are_refused_with_what_to_do)
     EXPECT_NE(error.find("near is greater than far"), std::string::npos) << error;
 }
 
+TEST(TagErrors, what_a_mode_needs_is_told)
+{
+    const auto error_of = [](const std::string &properties) {
+        Pipeline pipeline("videotestsrc num-buffers=3 ! lenssweeptag " + properties + " ! fakesink");
+        return pipeline.run();
+    };
+    EXPECT_NE(error_of("mode=step").find("needs a lens"), std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=v4l2:/dev/video-none").find("cannot open the lens"),
+              std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=max14574:/dev/i2c-none").find("i2c-dev"), std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=genicam:FocalPower").find("lenssweepsrc"), std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=optotune:/dev/ttyACM0").find("v4l2:/dev/video0"), std::string::npos);
+    EXPECT_NE(error_of("mode=sync").find("sync-line"), std::string::npos);
+    EXPECT_NE(error_of("mode=sync sync-line=DFF-NO-SUCH-LINE").find("gpio"), std::string::npos);
+}
+
+TEST_F(Tag, stats_count_what_came_in)
+{
+    start();
+    push(new_frame());
+    push(new_frame());
+    g_autoptr(GstElement) tag = gst_harness_find_element(harness_, "lenssweeptag");
+    g_autoptr(GstStructure) stats = nullptr;
+    g_object_get(tag, "stats", &stats, nullptr);
+    guint64 frames = 0;
+    guint64 labelled = 0;
+    guint64 dropped = 0;
+    EXPECT_TRUE(gst_structure_get(stats, "frames", G_TYPE_UINT64, &frames, "labelled", G_TYPE_UINT64,
+                                  &labelled, "dropped", G_TYPE_UINT64, &dropped, nullptr));
+    EXPECT_EQ(frames, 2U);
+    EXPECT_EQ(labelled, 2U);
+    EXPECT_EQ(dropped, 0U);
+}
+
 TEST(TagPipelines, labels_survive_conversion_and_scaling)
 {
     Pipeline pipeline("videotestsrc num-buffers=5 ! lenssweeptag planes=2 ! videoconvert ! videoscale ! "
