@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "trigger_labeller.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace dff {
+
+namespace {
+
+constexpr std::int64_t drift_ppm = 200;
+
+} // namespace
+
+TriggerLabeller::TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers)
+    : timing_(timing), numbers_(numbers), triggers_(triggers), search_(timing, numbers)
+{
+}
+
+void TriggerLabeller::start(Beginning beginning, std::int64_t)
+{
+    triggers_.restart();
+    search_.start(beginning);
+    anchor_.reset();
+    newest_.reset();
+    ledger_.restart();
+    lost_ = false;
+}
+
+FrameVerdict TriggerLabeller::label(const CameraFrame &frame)
+{
+    FrameVerdict verdict;
+    if (const auto reason = ledger_.enter(frame.id))
+        verdict.reason = *reason;
+    else
+        verdict = anchor_ && check_clock(frame) ? place(frame) : seek(frame);
+    (verdict.label ? counts_.labelled : counts_.unlabelled)++;
+    return verdict;
+}
+
+FrameVerdict TriggerLabeller::seek(const CameraFrame &frame)
+{
+    if (lost_)
+        return {std::nullopt, Unlabelled::Seeking};
+    anchor_ = search_.add(frame, triggers_);
+    lost_ = search_.failed();
+    if (anchor_) {
+        newest_ = Placed{frame.id, anchor_->index, triggers_.rhythm()};
+        verified_ns_ = frame.arrival_ns;
+        disagreeing_ = 0;
+        confirmed_ = true;
+        anchor_broken_ = false;
+    }
+    return {std::nullopt, Unlabelled::Seeking};
+}
+
+/* Whether the anchor can still be used. A camera without a clock has nothing but numbers to rely on, which a
+ * new rhythm of the triggers makes worthless. */
+bool TriggerLabeller::check_clock(const CameraFrame &frame)
+{
+    const std::int64_t off_ns = (frame.arrival_ns - verified_ns_) / 1'000'000 * drift_ppm;
+    if (off_ns > timing_.period_ns / 8)
+        confirmed_ = false;
+    const bool out_of_reach = frame.camera_ns == 0 && newest_->rhythm != triggers_.rhythm();
+    if (off_ns <= timing_.period_ns * 3 / 8 && disagreeing_ < 3 * timing_.planes && !anchor_broken_ &&
+        !out_of_reach)
+        return true;
+    anchor_.reset();
+    search_.start(Beginning::UnderWay);
+    return false;
+}
+
+void TriggerLabeller::follow(const CameraFrame &frame, const Trigger &trigger)
+{
+    anchor_->offset_ns += (frame.stamp_ns() - anchor_->offset_ns - trigger.time_ns) / 8;
+    anchor_->latency_ns = std::min(anchor_->latency_ns, frame.arrival_ns - trigger.time_ns);
+    verified_ns_ = frame.arrival_ns;
+    disagreeing_ = 0;
+}
+
+/* The edge of its sweep is missing, or late: then what comes of the sweep after it has no label either. */
+FrameVerdict TriggerLabeller::place_untriggered(std::int64_t exposed_ns)
+{
+    if (!untriggered_ns_ || exposed_ns - *untriggered_ns_ > timing_.sweep_ns)
+        counts_.dropped_sweeps++;
+    untriggered_ns_ = exposed_ns;
+    return {std::nullopt, Unlabelled::NoTrigger};
+}
+
+/* Without a clock of the camera's, a frame that is late looks like one of a later trigger, and the numbers
+ * are what can be relied on. With one, the time is; that the clock did not jump is then to be confirmed. */
+FrameVerdict TriggerLabeller::doubt(const CameraFrame &frame, const Trigger &trigger, std::uint64_t sweep)
+{
+    disagreeing_++;
+    if (frame.camera_ns != 0)
+        newest_ = Placed{frame.id, trigger.index, triggers_.rhythm()};
+    ledger_.drop_sweep(sweep);
+    return {std::nullopt, Unlabelled::Disagree};
+}
+
+bool TriggerLabeller::agrees(const CameraFrame &frame, std::int64_t exposed_ns, const Trigger &trigger)
+{
+    const bool timely = std::abs(exposed_ns - trigger.time_ns) <= timing_.tolerance_ns();
+    const bool follows = newest_->rhythm != triggers_.rhythm() ||
+                         numbers_.apart(newest_->id, frame.id, trigger.index - newest_->index);
+    if (!timely || !follows) {
+        counts_.disagreements++;
+        confirmed_ = false;
+        return false;
+    }
+    const std::int64_t delay_ns = frame.arrival_ns - trigger.time_ns - anchor_->latency_ns;
+    if (delay_ns < -timing_.tolerance_ns()) {
+        anchor_broken_ = true; /* no frame is here before its time: the clock jumped */
+        return false;
+    }
+    confirmed_ = confirmed_ || delay_ns <= timing_.tolerance_ns();
+    return confirmed_;
+}
+
+FrameVerdict TriggerLabeller::place(const CameraFrame &frame)
+{
+    const std::int64_t exposed_ns = frame.stamp_ns() - anchor_->offset_ns;
+    const auto trigger = triggers_.nearest(exposed_ns);
+    if (!trigger)
+        return place_untriggered(exposed_ns);
+    const auto sweep = static_cast<std::uint64_t>(trigger->index / timing_.planes);
+    const auto plane = static_cast<unsigned>(trigger->index % timing_.planes);
+    if (!agrees(frame, exposed_ns, *trigger))
+        return doubt(frame, *trigger, sweep);
+
+    follow(frame, *trigger);
+    if (newest_->rhythm != triggers_.rhythm() || trigger->index > newest_->index)
+        newest_ = Placed{frame.id, trigger->index, triggers_.rhythm()};
+    const std::int64_t begin_ns = trigger->time_ns - plane * timing_.period_ns;
+    if (untriggered_ns_ && std::abs(begin_ns - *untriggered_ns_) < timing_.sweep_ns &&
+        *untriggered_ns_ > begin_ns - timing_.tolerance_ns())
+        ledger_.drop_sweep(sweep);
+    untriggered_ns_.reset();
+    if (ledger_.dropped(sweep))
+        return {std::nullopt, Unlabelled::Disagree};
+    return {FrameLabel{sweep, plane, trigger->time_ns}, {}};
+}
+
+} // namespace dff

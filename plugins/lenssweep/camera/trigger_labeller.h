@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "anchor_search.h"
+#include "frame_ledger.h"
+#include "plane_labeller.h"
+#include "sweep_timing.h"
+#include "trigger_times.h"
+
+#include <optional>
+
+namespace dff {
+
+/* Labels frames whose triggers are seen: by the edges of a sync line, or because this host sends them.
+ *
+ * A frame has a label if its time, brought to the host's clock, is that of a trigger within a quarter of a
+ * period; if its number is as many after the frame before it as its trigger is after that one's; and if it
+ * arrived as long after its trigger as frames do. If not, the rest of its sweep has no label; from the next
+ * sweep on labels come again, as soon as a frame arrived as long after its trigger as frames do.
+ *
+ * The camera's clock is followed. It may run 200 ppm off the host's; after a silence in which that would have
+ * grown to three eighths of a period it must be found anew.
+ */
+class TriggerLabeller : public PlaneLabeller {
+public:
+    /* The triggers outlive this object. */
+    TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers);
+
+    void start(Beginning beginning, std::int64_t host_ns) override;
+    FrameVerdict label(const CameraFrame &frame) override;
+    bool lost() const override { return lost_; }
+    const LabelCounts &counts() const override { return counts_; }
+
+private:
+    struct Placed {
+        std::uint64_t id;
+        std::int64_t index;
+        unsigned rhythm;
+    };
+
+    FrameVerdict seek(const CameraFrame &frame);
+    FrameVerdict place(const CameraFrame &frame);
+    FrameVerdict place_untriggered(std::int64_t exposed_ns);
+    FrameVerdict doubt(const CameraFrame &frame, const Trigger &trigger, std::uint64_t sweep);
+    bool agrees(const CameraFrame &frame, std::int64_t exposed_ns, const Trigger &trigger);
+    bool check_clock(const CameraFrame &frame);
+    void follow(const CameraFrame &frame, const Trigger &trigger);
+
+    SweepTiming timing_;
+    FrameNumbers numbers_;
+    TriggerTimes &triggers_;
+    LabelCounts counts_;
+    FrameLedger ledger_{numbers_, counts_};
+    AnchorSearch search_;
+    std::optional<CameraAnchor> anchor_;
+    std::optional<Placed> newest_;
+    std::optional<std::int64_t> untriggered_ns_; /* when a frame was exposed that no trigger is known for */
+    std::int64_t verified_ns_ = 0;               /* arrival of the last frame that agreed */
+    unsigned disagreeing_ = 0;                   /* frames since then */
+    bool confirmed_ = false; /* the anchor holds: a frame arrived as it should since the last doubt */
+    bool anchor_broken_ = false;
+    bool lost_ = false;
+};
+
+} // namespace dff

@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lenssweep/camera/counting_labeller.h"
+#include "lenssweep/camera/sent_triggers.h"
+#include "lenssweep/camera/sync_rhythm.h"
+#include "lenssweep/camera/trigger_labeller.h"
+#include "simulated_rig.h"
+
+#include <gtest/gtest.h>
+
+using dff::FrameNumbering;
+using dff::FrameNumbers;
+using dff::PlaneLabeller;
+using dff::Unlabelled;
+
+namespace {
+
+constexpr std::int64_t period = 6'400'000;
+
+Rig paper_rig()
+{
+    Rig rig;
+    rig.timing = {6, period, 6 * period, 6'000'000};
+    rig.transfer_ns = 1'000'000;
+    rig.clock_offset_ns = 77'000'000'000;
+    return rig;
+}
+
+/* The paper's rig with a sync line, and what its labeller makes of it. */
+struct Bench {
+    explicit Bench(unsigned sweeps) : events(play(rig, 1'000'000'000, 0, sweeps, random)) {}
+
+    /* Labels of the frames that have one. */
+    std::vector<dff::FrameLabel> run()
+    {
+        labeller.start(PlaneLabeller::Beginning::FromRest, 1'000'000'000);
+        std::vector<dff::FrameLabel> labels;
+        for (const RigEvent &event : events) {
+            if (event.kind == RigEvent::Edge) {
+                rhythm.edge(event.time_ns);
+                continue;
+            }
+            const auto verdict = labeller.label(event.frame);
+            if (!verdict.label)
+                continue;
+            EXPECT_EQ(verdict.label->plane, event.plane);
+            EXPECT_EQ(verdict.label->sweep, event.sweep);
+            labels.push_back(*verdict.label);
+        }
+        return labels;
+    }
+
+    /* Position of a frame among the events. */
+    std::size_t frame(std::uint64_t sweep, unsigned plane) const
+    {
+        for (std::size_t i = 0; i < events.size(); i++)
+            if (events[i].kind == RigEvent::Frame && events[i].sweep == sweep && events[i].plane == plane)
+                return i;
+        return events.size();
+    }
+
+    std::size_t edge(unsigned number) const
+    {
+        std::size_t i = 0;
+        for (; i < events.size(); i++)
+            if (events[i].kind == RigEvent::Edge && number-- == 0)
+                break;
+        return i;
+    }
+
+    void erase(std::size_t index) { events.erase(events.begin() + static_cast<std::ptrdiff_t>(index)); }
+
+    std::mt19937_64 random{1};
+    Rig rig = paper_rig();
+    std::vector<RigEvent> events;
+    dff::SyncRhythm rhythm{rig.timing};
+    dff::TriggerLabeller labeller{rig.timing, FrameNumbers(FrameNumbering::GigE16), rhythm};
+};
+
+} // namespace
+
+TEST(FrameNumbers, sixteen_bits_wrap_to_one)
+{
+    const FrameNumbers numbers(FrameNumbering::GigE16);
+    EXPECT_EQ(numbers.steps(65535, 1), 1);
+    EXPECT_EQ(numbers.steps(1, 65535), -1);
+    EXPECT_EQ(numbers.steps(65530, 3), 8);
+    EXPECT_TRUE(numbers.apart(10, 11, 65536));
+    EXPECT_FALSE(numbers.apart(10, 11, 2));
+    EXPECT_FALSE(numbers.valid(0));
+    EXPECT_FALSE(numbers.valid(65536));
+}
+
+TEST(FrameNumbers, sixty_four_bits_do_not_wrap)
+{
+    const FrameNumbers extended(FrameNumbering::GigE64);
+    EXPECT_EQ(extended.steps(65535, 65536), 1);
+    EXPECT_FALSE(extended.valid(0));
+    EXPECT_TRUE(FrameNumbers(FrameNumbering::Usb64).valid(0));
+}
+
+TEST(SyncLine, the_first_sweep_shows_which_trigger_is_which_frame)
+{
+    Bench bench(10);
+    EXPECT_EQ(bench.run().size(), 9U * 6U);
+    EXPECT_EQ(bench.labeller.counts().lost, 0U);
+    EXPECT_EQ(bench.labeller.counts().dropped_sweeps, 0U);
+}
+
+TEST(SyncLine, a_label_knows_when_its_trigger_was)
+{
+    Bench bench(3);
+    const auto labels = bench.run();
+    ASSERT_FALSE(labels.empty());
+    EXPECT_NEAR(static_cast<double>(*labels[2].trigger_ns), 1e9 + 8 * period, 1e5);
+}
+
+TEST(SyncLine, a_lost_frame_leaves_the_others_their_labels)
+{
+    Bench bench(10);
+    bench.erase(bench.frame(4, 2));
+    EXPECT_EQ(bench.run().size(), 9U * 6U - 1U);
+    EXPECT_EQ(bench.labeller.counts().lost, 1U);
+}
+
+TEST(SyncLine, a_trigger_that_the_camera_missed_drops_the_rest_of_its_sweep)
+{
+    Bench bench(10);
+    const std::size_t missed = bench.frame(4, 2);
+    bench.erase(missed);
+    for (std::size_t i = missed; i < bench.events.size(); i++)
+        bench.events[i].frame.id--;
+    EXPECT_EQ(bench.run().size(), 9U * 6U - 4U);
+    EXPECT_EQ(bench.labeller.counts().dropped_sweeps, 1U);
+    EXPECT_EQ(bench.labeller.counts().lost, 0U);
+}
+
+TEST(SyncLine, a_lost_edge_drops_its_sweep)
+{
+    Bench bench(10);
+    bench.erase(bench.edge(5));
+    EXPECT_EQ(bench.run().size(), 8U * 6U);
+    EXPECT_EQ(bench.labeller.counts().dropped_sweeps, 1U);
+    EXPECT_EQ(bench.rhythm.wrong_edges(), 0U);
+}
+
+TEST(SyncLine, an_edge_out_of_the_rhythm_is_counted_and_not_believed)
+{
+    Bench bench(10);
+    RigEvent wrong = bench.events[bench.edge(5)];
+    wrong.time_ns += 2 * period;
+    const auto behind = static_cast<std::ptrdiff_t>(bench.frame(5, 1));
+    bench.events.insert(bench.events.begin() + behind, wrong);
+    EXPECT_EQ(bench.run().size(), 9U * 6U);
+    EXPECT_EQ(bench.rhythm.wrong_edges(), 1U);
+}
+
+TEST(SyncLine, a_frame_that_comes_twice_has_one_label)
+{
+    Bench bench(10);
+    const RigEvent twice = bench.events[bench.frame(4, 2)];
+    bench.events.insert(bench.events.begin() + static_cast<std::ptrdiff_t>(bench.frame(4, 3)), twice);
+    EXPECT_EQ(bench.run().size(), 9U * 6U);
+    EXPECT_EQ(bench.labeller.counts().doubled, 1U);
+}
+
+TEST(SyncLine, a_first_frame_that_never_came_is_noticed)
+{
+    Bench bench(10);
+    bench.erase(bench.frame(0, 0));
+    EXPECT_EQ(bench.run().size(), 0U);
+    EXPECT_TRUE(bench.labeller.lost());
+}
+
+TEST(SyncLine, ten_seconds_without_triggers_cost_two_sweeps)
+{
+    Bench bench(20);
+    for (std::size_t i = bench.edge(8); i < bench.events.size(); i++) {
+        RigEvent &event = bench.events[i];
+        if (event.kind == RigEvent::Frame && event.sweep < 8)
+            continue;
+        event.time_ns += 10'003'000'000;
+        event.frame.camera_ns += 10'003'000'000;
+        event.frame.arrival_ns += 10'003'000'000;
+    }
+    std::stable_sort(bench.events.begin(), bench.events.end(), [](const RigEvent &a, const RigEvent &b) {
+        return std::max(a.time_ns, a.frame.arrival_ns) < std::max(b.time_ns, b.frame.arrival_ns);
+    });
+    bench.labeller.start(PlaneLabeller::Beginning::FromRest, 0);
+    std::size_t labels = 0;
+    for (const RigEvent &event : bench.events) {
+        if (event.kind == RigEvent::Edge) {
+            bench.rhythm.edge(event.time_ns);
+            continue;
+        }
+        const auto verdict = bench.labeller.label(event.frame);
+        if (verdict.label) {
+            EXPECT_EQ(verdict.label->plane, event.plane);
+        }
+        labels += verdict.label.has_value();
+    }
+    EXPECT_EQ(labels, (20U - 1U - 2U) * 6U);
+}
+
+TEST(SentTriggers, label_the_frames_they_were_sent_for)
+{
+    const Rig rig = paper_rig();
+    dff::SentTriggers triggers(rig.timing);
+    dff::TriggerLabeller labeller(rig.timing, FrameNumbers(FrameNumbering::Usb64), triggers);
+    labeller.start(PlaneLabeller::Beginning::FromRest, 0);
+    unsigned labels = 0;
+    for (int i = 0; i < 60; i++) {
+        const std::int64_t sent_ns = 1'000'000'000 + i * period + (i % 3) * 400'000;
+        triggers.sent({i, sent_ns});
+        dff::CameraFrame frame{static_cast<std::uint64_t>(i), sent_ns + 500'000, sent_ns + 7'200'000};
+        const auto verdict = labeller.label(frame);
+        labels += verdict.label.has_value();
+        if (verdict.label) {
+            EXPECT_EQ(verdict.label->plane, static_cast<unsigned>(i % 6));
+        }
+    }
+    EXPECT_EQ(labels, 60U - 6U);
+}
+
+TEST(Counting, gives_up_when_the_triggers_rest)
+{
+    const Rig rig = paper_rig();
+    dff::CountingLabeller labeller(rig.timing, FrameNumbers(FrameNumbering::GigE16));
+    labeller.start(PlaneLabeller::Beginning::UnderWay, 0);
+    const auto frame = [](std::uint64_t id, std::int64_t time_ns) {
+        return dff::CameraFrame{id, time_ns, time_ns + 7'000'000};
+    };
+    for (unsigned i = 0; i < 9; i++) {
+        const auto verdict =
+            labeller.label(frame(65530 + i > 65535 ? 65530 + i - 65535 : 65530 + i, i * period + 1));
+        ASSERT_TRUE(verdict.label);
+        EXPECT_EQ(verdict.label->plane, i % 6);
+    }
+    EXPECT_EQ(labeller.label(frame(4, 40 * period)).reason, Unlabelled::Disagree);
+    EXPECT_TRUE(labeller.lost());
+    EXPECT_FALSE(labeller.label(frame(5, 41 * period)).label);
+    labeller.start(PlaneLabeller::Beginning::UnderWay, 0);
+    const auto again = labeller.label(frame(6, 42 * period));
+    ASSERT_TRUE(again.label);
+    EXPECT_EQ(again.label->plane, 0U);
+    EXPECT_EQ(again.label->sweep, 2U);
+}
