@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The focus measure of focus_measure.cl for CPUs: 16 lanes of 16-bit integers, one work-item a tile of the picture.
+ * The focus measure of focus_measure.cl for CPUs: 32 lanes of 16-bit integers, one work-item a tile of the picture.
  * All planes of a tile are measured one after the other; the tile's luma, its coarse pictures and the best plane so
- * far stay in the core's cache. Luma has 8 bits.
+ * far stay in the core's cache. Luma has 8 bits; memory is little-endian.
+ *
+ * Columns are taken 64 at a time, even ones in one vector of 16-bit integers and odd ones in another; their halves, as
+ * floats, hold every fourth column. That is how wide loads part bytes, pairs add up and coarse samples spread without a
+ * shuffle. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so that walking down
+ * a block is walking through memory.
  *
  * What differs from the formula:
  *  - the gradient's magnitude is max(m, 7/8 m + n/2) with m >= n the absolute derivatives: 3 % low to 0.8 % high;
@@ -13,20 +18,70 @@
  *  - beyond the border stands the fine picture, mirrored, at every level, which changes the outermost 2 LEVELS pixels;
  *  - the maximum has 8 bits of mantissa.
  */
-#define TILE_WIDTH 384 /* multiples of 12, so that coarse samples belong to one tile */
-#define TILE_HEIGHT 36
-#define MARGIN_X 16 /* at least 2 LEVELS, whole lanes */
-#define MARGIN_Y 8  /* at least 2 LEVELS */
-#define STRIDE (TILE_WIDTH + 2 * MARGIN_X + 48)
+#define TILE_WIDTH 384 /* a multiple of 192: whole blocks, whose coarse samples belong to one tile */
+#define TILE_HEIGHT 36 /* a multiple of ROUND */
+#define BLOCK 64       /* columns */
+#define ROUND 12       /* rows after which the phases of all levels come round */
+#define MARGIN_X 16    /* at least 2 LEVELS, whole lanes */
+#define MARGIN_Y 8     /* at least 2 LEVELS */
+#define ORIGIN 64      /* where a row of the tile begins in a row of its copy */
+#define STRIDE (ORIGIN + TILE_WIDTH + 2 * BLOCK)
 #define COARSE_STRIDE (TILE_WIDTH / 2 + 32)
-#define SPREAD_STRIDE (TILE_WIDTH + 48)
 #define COARSE_ROWS (TILE_HEIGHT / 2 + 4)
-#define SPREAD_LEVEL (COARSE_ROWS * SPREAD_STRIDE) /* samples */
+#define TILE_PIXELS (TILE_WIDTH * TILE_HEIGHT)
+#define SPREAD_ROWS (TILE_HEIGHT / 2 + 2)
+#define SPREAD_LEVEL (TILE_WIDTH * SPREAD_ROWS) /* samples */
+
+/* For vectors to be read and written at their own alignment: a load across two cache lines costs as much as two. */
+#define SCRATCH __attribute__((aligned(64)))
+
+/* Vectors of 32 are clang's, on which the drivers of CPUs are built; OpenCL's own end at 16. */
+typedef uchar uchar32 __attribute__((ext_vector_type(32)));
+typedef short short32 __attribute__((ext_vector_type(32)));
+typedef ushort ushort32 __attribute__((ext_vector_type(32)));
+typedef uchar32 __attribute__((aligned(1))) bytes32;
+typedef short32 __attribute__((aligned(2))) slanes32;
+typedef ushort32 __attribute__((aligned(2))) lanes32;
+typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */
+
+#define as_short32(v) __builtin_astype(v, short32)
+#define as_ushort32(v) __builtin_astype(v, ushort32)
+
+inline ushort32 even_bytes(ushort32 pairs)
+{
+    return pairs & (ushort)255;
+}
+
+inline ushort32 odd_bytes(ushort32 pairs)
+{
+    return pairs >> (ushort)8;
+}
+
+inline float16 even_lanes(ushort32 v)
+{
+    return convert_float16(as_int16(v) & 65535);
+}
+
+inline float16 odd_lanes(ushort32 v)
+{
+    return convert_float16(as_int16(as_uint16(v) >> 16));
+}
+
+inline short32 higher(short32 a, short32 b)
+{
+    return a > b ? a : b;
+}
+
+inline short32 lower(short32 a, short32 b)
+{
+    return a < b ? a : b;
+}
 
 /* The picture's part that a tile covers. */
 typedef struct {
     int x, y;          /* the first pixel */
     int columns, rows; /* that lie in the picture */
+    int whole_rows;    /* a multiple of ROUND, the last ones mirrored */
 } Tile;
 
 /* Copies a plane's tile with its margins, mirrored at the picture's borders. */
@@ -34,12 +89,12 @@ inline void load_tile(__global const uchar *plane, ulong stride, Tile tile, int 
 {
     const int left = max(tile.x - MARGIN_X, 0), right = min(tile.x + TILE_WIDTH + MARGIN_X, width);
     const int end = tile.x + tile.columns + MARGIN_X;
-    for (int y = -MARGIN_Y; y < (tile.rows + 11) / 12 * 12 + MARGIN_Y; y++) {
+    for (int y = -MARGIN_Y; y < tile.whole_rows + MARGIN_Y; y++) {
         __global const uchar *row = plane + stride * (ulong)mirror(tile.y + y, height);
-        uchar *copy = luma + (y + MARGIN_Y) * STRIDE + MARGIN_X - tile.x;
-        for (int x = left; x < right - 16; x += 16)
-            *(lanes8 *)(copy + x) = *(__global const lanes8 *)(row + x);
-        *(lanes8 *)(copy + right - 16) = *(__global const lanes8 *)(row + right - 16);
+        uchar *copy = luma + (y + MARGIN_Y) * STRIDE + ORIGIN - tile.x;
+        for (int x = left; x < right - 32; x += 32)
+            *(bytes32 *)(copy + x) = *(__global const bytes32 *)(row + x);
+        *(bytes32 *)(copy + right - 32) = *(__global const bytes32 *)(row + right - 32);
         for (int x = tile.x - MARGIN_X; x < 0; x++)
             copy[x] = copy[-x];
         for (int x = right; x < end; x++)
@@ -47,58 +102,94 @@ inline void load_tile(__global const uchar *plane, ulong stride, Tile tile, int 
     }
 }
 
-inline ushort16 magnitude(short16 dx, short16 dy)
+inline ushort32 magnitude(short32 dx, short32 dy)
 {
-    const short16 x = max(dx, -dx), y = max(dy, -dy);
-    const short16 m = max(x, y), n = min(x, y);
-    return as_ushort16(max(m, m - (m >> 3) + (n >> 1)));
+    const short32 x = higher(dx, -dx), y = higher(dy, -dy);
+    const short32 m = higher(x, y), n = lower(x, y);
+    return as_ushort32(higher(m, m - (m >> (short)3) + (n >> (short)1)));
 }
 
-/* Sums of LEVEL neighbours of a row, for 16 coarse samples. */
-inline ushort16 sum_pairs(const ushort *row)
+/* What Sobel's filter keeps of the two rows above, for 32 columns. */
+typedef struct {
+    short32 dx, dx_pair; /* derivative along x, and its sum over both rows */
+    short32 smooth[2];   /* smoothing along x */
+} Above;
+
+/* The gradient around the row above, from the row at hand: its derivative and its smoothing along x. */
+inline ushort32 next_gradient(short32 dx, short32 smooth, Above *above)
 {
-    const ushort16 a = *(const lanes16 *)row, b = *(const lanes16 *)(row + 16);
-    return (ushort16)(a.even, b.even) + (ushort16)(a.odd, b.odd);
+    const short32 dx_pair = above->dx + dx;
+    const ushort32 gradient = magnitude(above->dx_pair + dx_pair, smooth - above->smooth[0]);
+    above->dx = dx;
+    above->dx_pair = dx_pair;
+    above->smooth[0] = above->smooth[1];
+    above->smooth[1] = smooth;
+    return gradient;
 }
 
-inline ushort16 sum_3(const ushort *row)
+/* Sums of neighbours, for 32 coarse samples. */
+inline ushort32 sum_pairs(const uchar *row)
 {
-    return *(const lanes16 *)row + *(const lanes16 *)(row + 1) + *(const lanes16 *)(row + 2);
+    const ushort32 pairs = *(const byte_pairs *)row;
+    return even_bytes(pairs) + odd_bytes(pairs);
 }
 
-inline ushort16 sum_triples(const ushort *row)
+inline ushort32 sum_3(const ushort *row)
 {
-    const ushort16 a = sum_3(row), b = sum_3(row + 16), c = sum_3(row + 32);
-    return (ushort16)(a.s0369, a.scf, b.s258b, b.se, c.s147a, c.sd);
+    return *(const lanes32 *)row + *(const lanes32 *)(row + 1) + *(const lanes32 *)(row + 2);
 }
 
-inline ushort16 sum_quadruples(const ushort *row)
+/* Indices of a shuffle: `of` each lane. */
+#define LANES_4(of, i) of((i)), of((i) + 1), of((i) + 2), of((i) + 3)
+#define LANES_8(of, i) LANES_4(of, i), LANES_4(of, (i) + 4)
+#define LANES(of) LANES_8(of, 0), LANES_8(of, 8), LANES_8(of, 16), LANES_8(of, 24)
+
+/* Every third of 96 lanes: 22 of the first two vectors, 10 of the last. */
+#define THIRD_OF_A_B(i) ((i) < 22 ? 3 * (i) : 0)
+#define THIRD_OF_AB_C(i) ((i) < 22 ? (i) : 3 * (i) - 32)
+
+inline ushort32 sum_triples(const ushort *row)
 {
-    const ushort16 a = sum_pairs(row), b = sum_pairs(row + 32);
-    return (ushort16)(a.even, b.even) + (ushort16)(a.odd, b.odd);
+    const ushort32 a = sum_3(row), b = sum_3(row + 32), c = sum_3(row + 64);
+    const ushort32 ab = __builtin_shufflevector(a, b, LANES(THIRD_OF_A_B));
+    return __builtin_shufflevector(ab, c, LANES(THIRD_OF_AB_C));
 }
 
-inline ushort16 sum_neighbours(const ushort *row, int level)
+/* 16 sums of 4 x 4 pixels. */
+inline ushort16 sum_quadruples(const uchar *row)
 {
-    return level == 2 ? sum_pairs(row) : level == 3 ? sum_triples(row) : sum_quadruples(row);
+    const uint16 pairs = as_uint16(sum_pairs(row) + sum_pairs(row + STRIDE) + sum_pairs(row + 2 * STRIDE) +
+                                   sum_pairs(row + 3 * STRIDE));
+    return convert_ushort16((pairs & 65535u) + (pairs >> 16));
+}
+
+inline ushort32 sum_3_rows(const uchar *row)
+{
+    return __builtin_convertvector(*(const bytes32 *)row, ushort32) +
+           __builtin_convertvector(*(const bytes32 *)(row + STRIDE), ushort32) +
+           __builtin_convertvector(*(const bytes32 *)(row + 2 * STRIDE), ushort32);
 }
 
 /* Sums of level x level pixels, from two coarse samples before the tile to two behind. */
 inline void downsample(const uchar *luma, Tile tile, ushort *sums, int level)
 {
-    ushort row[STRIDE + 64];
-    const int first = MARGIN_X - 2 * level;
-    const int columns = (tile.columns + level - 1) / level + 4, rows = (tile.rows + level - 1) / level + 4;
+    SCRATCH ushort row[STRIDE];
+    const int columns = (tile.columns + level - 1) / level + 4, rows = tile.whole_rows / level + 4;
     for (int r = 0; r < rows; r++) {
-        const uchar *fine = luma + (MARGIN_Y + (r - 2) * level) * STRIDE;
-        for (int x = 0; x < STRIDE; x += 16) {
-            ushort16 sum = convert_ushort16(*(const lanes8 *)(fine + x));
-            for (int k = 1; k < level; k++)
-                sum += convert_ushort16(*(const lanes8 *)(fine + k * STRIDE + x));
-            *(lanes16 *)(row + x) = sum;
+        const uchar *fine = luma + (MARGIN_Y + (r - 2) * level) * STRIDE + ORIGIN - 2 * level;
+        ushort *out = sums + r * COARSE_STRIDE;
+        if (level == 2) {
+            for (int c = 0; c < columns; c += 32)
+                *(ushort32 *)(out + c) = sum_pairs(fine + 2 * c) + sum_pairs(fine + STRIDE + 2 * c);
+        } else if (level == 3) {
+            for (int x = 0; x < 3 * columns; x += 32)
+                *(ushort32 *)(row + x) = sum_3_rows(fine + x);
+            for (int c = 0; c < columns; c += 32)
+                *(ushort32 *)(out + c) = sum_triples(row + 3 * c);
+        } else {
+            for (int c = 0; c < columns; c += 16)
+                *(ushort16 *)(out + c) = sum_quadruples(fine + 4 * c);
         }
-        for (int c = 0; c < columns; c += 16)
-            *(lanes16 *)(sums + r * COARSE_STRIDE + c) = sum_neighbours(row + first + c * level, level);
     }
 }
 
@@ -106,90 +197,109 @@ inline void downsample(const uchar *luma, Tile tile, ushort *sums, int level)
 #define UNITS(level) ((level) % 2 ? (level) : 2 * (level))
 #define FAR(level, phase) (abs(2 * (phase) + 1 - (level)) >> ((level) % 2))
 
-/* Keeps UNITS^2 times the coarse gradient within 16 bits. */
+/* Keeps UNITS times the coarse gradient within 16 bits. */
 #define GRADIENT_SHIFT(level) ((level) == 4 ? 5 : 1)
 
-inline ushort16 interleave(ushort8 a, ushort8 b)
+/* Even or odd columns of a block, out of a, b, c whose samples stand at columns % 3 = 0, 1, 2 from `phase` columns
+ * before the block on: a and b are put in place first. */
+#define FROM_A_B(column, i) ((column) % 3 * 32 % 64 + (column) / 3)
+#define FROM_AB_C(column, i) ((column) % 3 == 2 ? 32 + (column) / 3 : (i))
+#define EVEN_A_B(i) FROM_A_B(PHASE + 2 * (i), i)
+#define EVEN_AB_C(i) FROM_AB_C(PHASE + 2 * (i), i)
+#define ODD_A_B(i) FROM_A_B(PHASE + 2 * (i) + 1, i)
+#define ODD_AB_C(i) FROM_AB_C(PHASE + 2 * (i) + 1, i)
+#define MERGE_EVEN(a, b, c) \
+    __builtin_shufflevector(__builtin_shufflevector(a, b, LANES(EVEN_A_B)), c, LANES(EVEN_AB_C))
+#define MERGE_ODD(a, b, c) __builtin_shufflevector(__builtin_shufflevector(a, b, LANES(ODD_A_B)), c, LANES(ODD_AB_C))
+
+typedef struct {
+    ushort32 even, odd; /* columns */
+} Columns;
+
+inline Columns merge_triples(ushort32 a, ushort32 b, ushort32 c, int phase)
 {
-    ushort16 v;
-    v.even = a;
-    v.odd = b;
-    return v;
+    switch (phase) {
+#define PHASE 0
+    case PHASE:
+        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+#undef PHASE
+#define PHASE 1
+    case PHASE:
+        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+#undef PHASE
+#define PHASE 2
+    default:
+        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+#undef PHASE
+    }
 }
 
 /* One row of coarse gradients spread to the fine columns, in 1/UNITS. */
-inline void spread_row(const ushort *gradient, ushort *fine, int columns, int level)
+inline void spread_row(const ushort *gradient, float *fine, int columns, int level)
 {
-    for (int c = 0; c * level < columns; c += 16) {
-        const ushort16 here = *(const lanes16 *)(gradient + c + 1);
-        const ushort16 before = *(const lanes16 *)(gradient + c), after = *(const lanes16 *)(gradient + c + 2);
-        lanes16 *out = (lanes16 *)(fine + c * level);
-        if (level == 2) {
-            const ushort16 a = here * (ushort)3 + before, b = here * (ushort)3 + after;
-            out[0] = interleave(a.lo, b.lo);
-            out[1] = interleave(a.hi, b.hi);
-        } else if (level == 3) {
-            const ushort16 a = here * (ushort)2 + before, b = here * (ushort)3, d = here * (ushort)2 + after;
-            out[0] = (ushort16)(a.s0, b.s0, d.s0, a.s1, b.s1, d.s1, a.s2, b.s2, d.s2, a.s3, b.s3, d.s3, a.s4, b.s4,
-                                d.s4, a.s5);
-            out[1] = (ushort16)(b.s5, d.s5, a.s6, b.s6, d.s6, a.s7, b.s7, d.s7, a.s8, b.s8, d.s8, a.s9, b.s9, d.s9,
-                                a.sa, b.sa);
-            out[2] = (ushort16)(d.sa, a.sb, b.sb, d.sb, a.sc, b.sc, d.sc, a.sd, b.sd, d.sd, a.se, b.se, d.se, a.sf,
-                                b.sf, d.sf);
-        } else {
-            const ushort16 a = here * (ushort)5 + before * (ushort)3, b = here * (ushort)7 + before;
-            const ushort16 d = here * (ushort)7 + after, e = here * (ushort)5 + after * (ushort)3;
-            const ushort16 ad = interleave(a.lo, d.lo), be = interleave(b.lo, e.lo);
-            const ushort16 ad_hi = interleave(a.hi, d.hi), be_hi = interleave(b.hi, e.hi);
-            out[0] = interleave(ad.lo, be.lo);
-            out[1] = interleave(ad.hi, be.hi);
-            out[2] = interleave(ad_hi.lo, be_hi.lo);
-            out[3] = interleave(ad_hi.hi, be_hi.hi);
-        }
+    for (int block = 0; block * BLOCK < columns; block++) {
+        const ushort *first = gradient + block * BLOCK / level;
+        const ushort32 before = *(const lanes32 *)first, here = *(const lanes32 *)(first + 1);
+        const ushort32 after = *(const lanes32 *)(first + 2);
+        float16 *out = (float16 *)(fine + block * SPREAD_ROWS * BLOCK);
+        Columns spread;
+        if (level == 2)
+            spread = (Columns){here * (ushort)3 + before, here * (ushort)3 + after};
+        else
+            spread = merge_triples(here * (ushort)2 + before, here * (ushort)3, here * (ushort)2 + after, block % 3);
+        out[0] = even_lanes(spread.even);
+        out[1] = even_lanes(spread.odd);
+        out[2] = odd_lanes(spread.even);
+        out[3] = odd_lanes(spread.odd);
+    }
+}
+
+/* The same at level 4, where the columns of a vector share their phase. */
+inline void spread_row_of_quarters(const ushort *gradient, float *fine, int columns)
+{
+    for (int block = 0; block * BLOCK < columns; block++) {
+        const ushort *first = gradient + block * BLOCK / 4;
+        const float16 before = convert_float16(*(const lanes16 *)first);
+        const float16 here = convert_float16(*(const lanes16 *)(first + 1));
+        const float16 after = convert_float16(*(const lanes16 *)(first + 2));
+        float16 *out = (float16 *)(fine + block * SPREAD_ROWS * BLOCK);
+        out[0] = here * 5.0f + before * 3.0f;
+        out[1] = here * 7.0f + before;
+        out[2] = here * 7.0f + after;
+        out[3] = here * 5.0f + after * 3.0f;
     }
 }
 
 /* Gradients of a coarse picture, from one row before the tile to one behind, each spread to the fine columns. */
-inline void coarse_gradient(const ushort *sums, Tile tile, ushort *spread, int level)
+inline void coarse_gradient(const ushort *sums, Tile tile, float *spread, int level)
 {
-    ushort gradient[COARSE_STRIDE + 16];
-    const int columns = (tile.columns + level - 1) / level + 2, rows = (tile.rows + level - 1) / level + 2;
-    for (int r = 0; r < rows; r++) {
-        for (int c = 0; c < columns; c += 16) {
-            const short *above = (const short *)sums + r * COARSE_STRIDE + c;
-            const short *here = above + COARSE_STRIDE, *below = here + COARSE_STRIDE;
-            const short16 tl = *(const slanes16 *)above, tr = *(const slanes16 *)(above + 2);
-            const short16 bl = *(const slanes16 *)below, br = *(const slanes16 *)(below + 2);
-            const short16 l = *(const slanes16 *)here, r = *(const slanes16 *)(here + 2);
-            const short16 t = *(const slanes16 *)(above + 1), b = *(const slanes16 *)(below + 1);
-            const short16 dx = tr - tl + br - bl + ((r - l) << 1), dy = bl - tl + br - tr + ((b - t) << 1);
-            *(lanes16 *)(gradient + c) = magnitude(dx, dy) >> (ushort)GRADIENT_SHIFT(level);
+    SCRATCH ushort gradient[COARSE_ROWS * COARSE_STRIDE];
+    const int columns = (tile.columns + level - 1) / level + 2, rows = tile.whole_rows / level + 2;
+    for (int c = 0; c < columns; c += 32) {
+        Above above = {0, 0, {0, 0}};
+        for (int r = -2; r < rows; r++) {
+            const short *row = (const short *)sums + (r + 2) * COARSE_STRIDE + c;
+            const short32 left = *(const slanes32 *)row, centre = *(const slanes32 *)(row + 1);
+            const short32 right = *(const slanes32 *)(row + 2);
+            const ushort32 g = next_gradient(right - left, left + right + (centre << (short)1), &above);
+            if (r >= 0)
+                *(ushort32 *)(gradient + r * COARSE_STRIDE + c) = g >> (ushort)GRADIENT_SHIFT(level);
         }
-        spread_row(gradient, spread + r * SPREAD_STRIDE, tile.columns, level);
     }
+    for (int r = 0; r < rows; r++)
+        if (level == 4)
+            spread_row_of_quarters(gradient + r * COARSE_STRIDE, spread + r * BLOCK, tile.columns);
+        else
+            spread_row(gradient + r * COARSE_STRIDE, spread + r * BLOCK, tile.columns, level);
 }
 
-/* The two rows of spread gradients around a fine row, and their weights in 1/UNITS. */
-typedef struct {
-    int near_row, far_row;
-    ushort near, far;
-} Rows;
-
-inline Rows rows_around(int y, int level)
+/* The spread gradient in a fine row, `phase` rows below the one that the coarse row after `spread` begins with. */
+inline float16 upsample(const float *spread, int phase, int level)
 {
-    const int k = y / level, phase = y % level; /* of the row before; the sample's own row is k + 1 */
-    Rows rows;
-    rows.near_row = (k + 1) * SPREAD_STRIDE;
-    rows.far_row = (2 * phase + 1 < level ? k : k + 2) * SPREAD_STRIDE;
-    rows.far = (ushort)FAR(level, phase);
-    rows.near = (ushort)(UNITS(level) - rows.far);
-    return rows;
-}
-
-inline float16 upsample(const ushort *spread, const Rows *rows)
-{
-    const ushort16 near = *(const lanes16 *)(spread + rows->near_row), far = *(const lanes16 *)(spread + rows->far_row);
-    return convert_float16(near * rows->near + far * rows->far);
+    const int k = phase / level, far_row = 2 * (phase % level) + 1 < level ? k : k + 2;
+    const float far = FAR(level, phase % level), near = UNITS(level) - far;
+    const float16 here = *(const float16 *)(spread + (k + 1) * BLOCK);
+    return far == 0.0f ? here * near : here * near + *(const float16 *)(spread + far_row * BLOCK) * far;
 }
 
 /* What one unit of the integer product is worth in P. */
@@ -197,36 +307,59 @@ inline float16 upsample(const ushort *spread, const Rows *rows)
 #define COARSE_UNIT(level) \
     ((float)(1 << GRADIENT_SHIFT(level)) / (8 * (level) * (level) * UNITS(level) * UNITS(level)))
 
+inline Columns next_gradients(const uchar *row, Above *even, Above *odd)
+{
+    const ushort32 here = *(const byte_pairs *)row;
+    const short32 b = as_short32(even_bytes(here)), c = as_short32(odd_bytes(here));
+    const short32 a = as_short32(even_bytes(*(const byte_pairs *)(row - 1)));
+    const short32 d = as_short32(odd_bytes(*(const byte_pairs *)(row + 1)));
+    const short32 middle = b + c;
+    return (Columns){next_gradient(c - a, a + b + middle, even), next_gradient(d - b, c + d + middle, odd)};
+}
+
+/* The product over the levels for 16 pixels in row `phase` of a round. */
+inline float16 product_of_levels(float16 gradient, const float *spread, int y, int phase)
+{
+    float16 product = gradient;
+    __attribute__((opencl_unroll_hint))
+    for (int level = 2; level <= LEVELS; level++)
+        product *= upsample(spread + (level - 2) * SPREAD_LEVEL + y / level * BLOCK, phase, level);
+    return product;
+}
+
 /* The lowest bits of the best product so far hold LAST_PLANE - z. */
 #define LAST_PLANE 63
 
-/* Takes plane z of a tile into the best product and the sum over the planes. */
-inline void measure_plane(const uchar *luma, Tile tile, const ushort *spread, const Rows (*rows)[TILE_HEIGHT], int z,
-                          int *best, float *sum)
+/* Takes a product of plane z into the best one and the sum over the planes, for 16 pixels. */
+inline void take(float16 product, int z, int *best, float *sum)
 {
-    for (int x = 0; x < tile.columns; x += 16) {
-        short16 dx[2], smooth[2]; /* derivative along x and smoothing of the two rows before */
-        for (int y = -1; y <= tile.rows; y++) {
-            const uchar *row = luma + (y + MARGIN_Y) * STRIDE + MARGIN_X + x;
-            const short16 l = convert_short16(*(const lanes8 *)(row - 1));
-            const short16 c = convert_short16(*(const lanes8 *)row);
-            const short16 r = convert_short16(*(const lanes8 *)(row + 1));
-            const short16 dx_below = r - l, smooth_below = l + r + (c << 1);
-            if (y > 0) {
-                const int i = (y - 1) * TILE_WIDTH + x;
-                float16 product = convert_float16(
-                    magnitude(dx[0] + dx_below + (dx[1] << 1), smooth_below - smooth[0]));
+    const int16 candidate = (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z);
+    *(int16 *)best = max(*(int16 *)best, candidate);
+    *(float16 *)sum += product;
+}
+
+/* Takes plane z of a tile into the best product and the sum over the planes. */
+inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int z, int *best, float *sum)
+{
+    for (int block = 0; block * BLOCK < tile.columns; block++) {
+        Above even = {0, 0, {0, 0}}, odd = even;
+        const uchar *row = luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK;
+        next_gradients(row, &even, &odd);
+        next_gradients(row + STRIDE, &even, &odd);
+        row += 2 * STRIDE;
+        const float *block_spread = spread + block * SPREAD_ROWS * BLOCK;
+        int pixel = block * TILE_HEIGHT * BLOCK;
+        for (int y = 0; y < tile.whole_rows; y += ROUND) {
+            __attribute__((opencl_unroll_hint))
+            for (int phase = 0; phase < ROUND; phase++) {
+                const Columns fine = next_gradients(row, &even, &odd);
+                const float16 columns[4] = {even_lanes(fine.even), even_lanes(fine.odd), odd_lanes(fine.even),
+                                            odd_lanes(fine.odd)};
                 __attribute__((opencl_unroll_hint))
-                for (int level = 2; level <= LEVELS; level++)
-                    product *= upsample(spread + (level - 2) * SPREAD_LEVEL + x, &rows[level - 2][y - 1]);
-                *(flanes *)(sum + i) += product;
-                const int16 candidate = (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z);
-                *(ilanes *)(best + i) = max(*(ilanes *)(best + i), candidate);
+                for (int i = 0; i < 4; i++, pixel += 16)
+                    take(product_of_levels(columns[i], block_spread + 16 * i, y, phase), z, best + pixel, sum + pixel);
+                row += STRIDE;
             }
-            dx[0] = dx[1];
-            dx[1] = dx_below;
-            smooth[0] = smooth[1];
-            smooth[1] = smooth_below;
         }
     }
 }
@@ -249,6 +382,17 @@ inline void store_confidence(float16 peak, float16 mean, int planes, __global uc
         confidence[i] = lanes[i];
 }
 
+/* 16 pixels from column x on, out of a tile's blocks. */
+inline int16 pixels_at(const int *blocks, int x, int y)
+{
+    const int *columns = blocks + (x / BLOCK * TILE_HEIGHT + y) * BLOCK + x % BLOCK / 4;
+    const int4 a = *(const int4 *)columns, b = *(const int4 *)(columns + 16);
+    const int4 c = *(const int4 *)(columns + 32), d = *(const int4 *)(columns + 48);
+    const int8 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5, 2, 6, 3, 7);
+    const int8 cd = __builtin_shufflevector(c, d, 0, 4, 1, 5, 2, 6, 3, 7);
+    return __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15);
+}
+
 /* One work-item a tile. peak[height][stride]: max_z P as the upper half of a float; peak_plane likewise: where it is,
  * UNKNOWN_PLANE where it is not `tolerance` times the mean over z; tile_sums: sum over a tile's pixels of the mean over
  * z. The stride is in pixels and holds whole lanes; peak is 0 behind the picture's columns. confidence[height][width]
@@ -257,25 +401,22 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
                           __global uchar *peak_plane, __global float *tile_sums, __global uchar *confidence, int stride,
                           int width, int height, int planes, float tolerance, int with_confidence)
 {
-    uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
-    ushort sums[COARSE_ROWS * COARSE_STRIDE];
-    ushort spread[(LEVELS > 1 ? LEVELS - 1 : 1) * SPREAD_LEVEL];
-    int best[TILE_HEIGHT * TILE_WIDTH];
-    float sum[TILE_HEIGHT * TILE_WIDTH];
+    SCRATCH uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
+    SCRATCH ushort sums[COARSE_ROWS * COARSE_STRIDE + 64];
+    SCRATCH float spread[(LEVELS > 1 ? LEVELS - 1 : 1) * SPREAD_LEVEL];
+    SCRATCH int best[TILE_PIXELS];
+    SCRATCH float sum[TILE_PIXELS];
 
     Tile tile;
     tile.x = (int)get_group_id(0) * TILE_WIDTH;
     tile.y = (int)get_group_id(1) * TILE_HEIGHT;
     tile.columns = min(TILE_WIDTH, width - tile.x);
     tile.rows = min(TILE_HEIGHT, height - tile.y);
+    tile.whole_rows = (tile.rows + ROUND - 1) / ROUND * ROUND;
 
-    Rows rows[LEVELS > 1 ? LEVELS - 1 : 1][TILE_HEIGHT];
-    for (int level = 2; level <= LEVELS; level++)
-        for (int y = 0; y < TILE_HEIGHT; y++)
-            rows[level - 2][y] = rows_around(y, level);
-    for (int i = 0; i < TILE_HEIGHT * TILE_WIDTH; i += 16) {
-        *(ilanes *)(best + i) = 0;
-        *(flanes *)(sum + i) = 0.0f;
+    for (int i = 0; i < TILE_PIXELS; i += 16) {
+        *(int16 *)(best + i) = 0;
+        *(float16 *)(sum + i) = 0.0f;
     }
     for (int z = 0; z < planes; z++) {
         load_tile(stack + table[z].x, table[z].y, tile, width, height, luma);
@@ -284,7 +425,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
             downsample(luma, tile, sums, level);
             coarse_gradient(sums, tile, spread + (level - 2) * SPREAD_LEVEL, level);
         }
-        measure_plane(luma, tile, spread, rows, z, best, sum);
+        measure_plane(luma, tile, spread, z, best, sum);
     }
 
     float unit = FINE_UNIT;
@@ -295,10 +436,10 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     for (int y = 0; y < tile.rows; y++)
         for (int x = 0; x < tile.columns; x += 16) {
             const ulong pixel = (ulong)(tile.y + y) * stride + tile.x + x;
-            const int16 bits = *(ilanes *)(best + y * TILE_WIDTH + x);
+            const int16 bits = pixels_at(best, x, y);
             const int16 inside = LANE < tile.columns - x;
             const float16 p = as_float16(bits & ~LAST_PLANE & inside) * unit;
-            const float16 mean = as_float16(*(ilanes *)(sum + y * TILE_WIDTH + x) & inside) * (unit / planes);
+            const float16 mean = as_float16(pixels_at((const int *)sum, x, y) & inside) * (unit / planes);
             const int16 plane = LAST_PLANE - (bits & LAST_PLANE);
             const int16 sharp = p >= tolerance * mean;
             total += mean;
