@@ -23,6 +23,8 @@ struct DepthScale {
     double offset;
 
     double value(uint16_t pixel) const { return offset + scale * pixel; }
+
+    bool operator==(const DepthScale &) const = default;
 };
 
 /* Turns plane positions z in [0, planes - 1] into pixels of a depth map and back, for one sweep and one unit.
