@@ -346,12 +346,32 @@ static bool open_device(GstDffDepth *self)
     }
 }
 
+static bool load_calibration(GstDffDepth *self)
+{
+    State &state = *self->state;
+    std::string file;
+    {
+        const std::lock_guard lock(state.mutex);
+        file = state.settings.calibration;
+    }
+    try {
+        state.depth.set_calibration(file.empty() ? std::nullopt
+                                                 : std::optional(dff::read_camera_calibration(file)));
+        return true;
+    } catch (const std::runtime_error &error) {
+        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
+        return false;
+    }
+}
+
 static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstStateChange transition)
 {
     GstDffDepth *self = GST_DFF_DEPTH(element);
     State &state = *self->state;
 
     if (transition == GST_STATE_CHANGE_NULL_TO_READY && !open_device(self))
+        return GST_STATE_CHANGE_FAILURE;
+    if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !load_calibration(self))
         return GST_STATE_CHANGE_FAILURE;
 
     const GstStateChangeReturn result =

@@ -21,6 +21,7 @@ enum : guint {
     SigmaChroma,
     Lambda,
     Iterations,
+    Calibration,
     End,
 };
 } // namespace property
@@ -118,6 +119,13 @@ void install_depth_properties(GObjectClass *object_class)
     install(property::Iterations,
             g_param_spec_uint("iterations", "Iterations", "Steps of the solver that fills unknown pixels", 0,
                               1000, p.grid.iterations, playing));
+    install(
+        property::Calibration,
+        g_param_spec_string("calibration", "Calibration",
+                            "File of the camera's calibration as OpenCV writes it (camera_matrix, "
+                            "distortion_coefficients, image_width, image_height), for whole pictures of any "
+                            "size: the GstDepthMeta tells the intrinsics; empty: they are unknown",
+                            "", ready));
 }
 
 bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
@@ -162,6 +170,9 @@ bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
         return true;
     case property::Iterations:
         p.grid.iterations = g_value_get_uint(value);
+        return true;
+    case property::Calibration:
+        settings.calibration = g_value_get_string(value) ? g_value_get_string(value) : "";
         return true;
     default:
         return false;
@@ -210,6 +221,9 @@ bool get_depth_property(const DepthSettings &settings, guint id, GValue *value)
         return true;
     case property::Iterations:
         g_value_set_uint(value, p.grid.iterations);
+        return true;
+    case property::Calibration:
+        g_value_set_string(value, settings.calibration.c_str());
         return true;
     default:
         return false;

@@ -14,10 +14,11 @@ struct DepthSettings {
     DepthParameters parameters;
     GstDepthUnit unit = GST_DEPTH_UNIT_AUTO;
     std::string device;
+    std::string calibration; /* file, or empty */
 };
 
 /* The properties of dffdepth, from 1 to depth_properties_end - 1. */
-constexpr guint depth_properties_end = 14;
+constexpr guint depth_properties_end = 15;
 
 void install_depth_properties(GObjectClass *object_class);
 

@@ -4,7 +4,23 @@
 
 #include "gstcl/mapped_stack.h"
 
+#include <algorithm>
+
 namespace dff {
+
+namespace {
+
+void set_intrinsics(GstDepthInfo &depth, const CameraCalibration &camera)
+{
+    depth.has_intrinsics = TRUE;
+    depth.fx = camera.fx;
+    depth.fy = camera.fy;
+    depth.cx = camera.cx;
+    depth.cy = camera.cy;
+    std::copy(camera.distortion.begin(), camera.distortion.end(), depth.distortion);
+}
+
+} // namespace
 
 void StackDepth::stop()
 {
@@ -47,6 +63,10 @@ GstDepthInfo StackDepth::prepare(GstBuffer *stack, guint64 index)
         depth.sequence = meta->sequence;
         depth.sweep = focus.sweep;
     }
+    if (calibration_)
+        set_intrinsics(depth,
+                       calibration_->scaled_to(static_cast<unsigned>(GST_VIDEO_INFO_WIDTH(&stack_.frame)),
+                                               static_cast<unsigned>(GST_VIDEO_INFO_HEIGHT(&stack_.frame))));
     return depth;
 }
 

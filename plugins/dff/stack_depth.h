@@ -4,6 +4,7 @@
 
 #include "dffdepth_properties.h"
 #include "gstcl/depth_facts.h"
+#include "optics/camera_calibration.h"
 
 #include <memory>
 #include <optional>
@@ -20,6 +21,8 @@ public:
     /* Caps and settings of what comes from here on. */
     void set_stack(const GstFocalStackInfo &stack);
     void set_settings(const DepthSettings &settings);
+    /* What the facts say of the camera. */
+    void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
     const GstFocalStackInfo &stack() const { return stack_; }
 
     /* Makes the engine ready for `stack`, the `index`-th of its stream, and returns the facts of its depth
@@ -44,6 +47,7 @@ private:
     std::unique_ptr<FocusEngine> engine_;
     std::optional<DepthEncoder> encoder_;
     PlanePositions positions_;
+    std::optional<CameraCalibration> calibration_;
 };
 
 } // namespace dff
