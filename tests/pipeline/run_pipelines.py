@@ -13,11 +13,13 @@ in one temporary folder, so that a pipeline can read what an earlier one wrote.
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 
+STRINGS = pathlib.Path(__file__).parents[2] / 'pipelines/strings'
 SECONDS_EACH = 60
 OUR_CATEGORIES = ('lenssweep*', 'focalstack*', 'dff*', 'aif*', 'depth*')
 COMPLAINT = re.compile(r'^WARNING:|^ERROR:| (WARN|ERROR) |-(CRITICAL|WARNING) \*\*|runtime error:|ERROR: AddressSanitizer',
@@ -74,6 +76,8 @@ def main(paths):
     print(f'1..{len(found)}', flush=True)
     failures = 0
     with tempfile.TemporaryDirectory() as folder:
+        for file in STRINGS.glob('*.yml'):  # which some pipelines read
+            shutil.copy(file, folder)
         for number, (name, command) in enumerate(found, 1):
             problem = run(command, folder)
             failures += problem is not None

@@ -6,7 +6,6 @@ namespace dff {
 
 Harness depth_harness(const std::string &pipeline, unsigned width, unsigned height)
 {
-    gst_init(nullptr, nullptr);
     Harness harness(gst_harness_new_parse(pipeline.c_str()));
     g_autofree gchar *caps =
         g_strdup_printf("video/x-raw,format=GRAY16_LE,width=%u,height=%u,framerate=26/1,depth-unit=dioptre,"

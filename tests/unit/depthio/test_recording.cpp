@@ -18,7 +18,6 @@ using Sample = std::unique_ptr<GstSample, SampleDeleter>;
 /* Everything that leaves the appsinks `names` of a pipeline, until its end. */
 std::vector<std::vector<Sample>> play(const std::string &description, const std::vector<const char *> &names)
 {
-    gst_init(nullptr, nullptr);
     g_autoptr(GError) error = nullptr;
     g_autoptr(GstElement) pipeline = gst_parse_launch(description.c_str(), &error);
     EXPECT_EQ(error, nullptr) << error->message;
@@ -160,7 +159,6 @@ TEST(Recording, planes_compressed_without_loss_give_the_same_depth_to_the_bit)
 
 TEST(Recording, depth_and_the_camera_clock_keep_their_metas)
 {
-    gst_init(nullptr, nullptr);
     const Harness harness = depth_harness("dffmetapay ! rtpgstpay ! rtpgstdepay ! dffmetadepay", 16, 8);
     const GstDepthInfo depth = dioptres_from_5_to_1();
     g_autoptr(GstCaps) clock = gst_caps_from_string("timestamp/x-camera");

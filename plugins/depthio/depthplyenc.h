@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "depthfileenc.h"
+
+G_BEGIN_DECLS
+
+#define GST_TYPE_DEPTH_PLY_ENC (gst_depth_ply_enc_get_type())
+G_DECLARE_FINAL_TYPE(GstDepthPlyEnc, gst_depth_ply_enc, GST, DEPTH_PLY_ENC, GstDepthFileEnc)
+
+GST_ELEMENT_REGISTER_DECLARE(depthplyenc)
+
+G_END_DECLS

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "encoded_file.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
+#include <sstream>
+#include <unistd.h>
+
+using namespace dff;
+
+namespace {
+
+constexpr unsigned width = 64;
+constexpr unsigned height = 48;
+const std::string dioptres = ",depth-unit=dioptre,depth-near=5.0,depth-far=0.0";
+
+struct Point {
+    float x, y, z;
+    std::array<guint8, 3> colour;
+};
+
+/* A reader of its own for what such a file says of itself. */
+std::vector<Point> read_ply(const std::vector<guint8> &bytes)
+{
+    const std::string text(bytes.begin(), bytes.end());
+    const std::string end = "end_header\n";
+    const size_t header_size = text.find(end) + end.size();
+    std::istringstream header(text.substr(0, header_size));
+    EXPECT_EQ(text.substr(0, 4), "ply\n");
+    size_t count = 0;
+    std::string word, properties;
+    while (header >> word) {
+        if (word == "vertex")
+            header >> count;
+        if (word == "property") {
+            std::string type, name;
+            header >> type >> name;
+            properties += type + " " + name + ";";
+        }
+    }
+    EXPECT_EQ(properties, "float x;float y;float z;uchar red;uchar green;uchar blue;");
+    EXPECT_EQ(bytes.size(), header_size + 15 * count);
+    std::vector<Point> points(count);
+    for (size_t k = 0; k < count && header_size + 15 * (k + 1) <= bytes.size(); k++) {
+        std::memcpy(&points[k], bytes.data() + header_size + 15 * k, 12);
+        std::memcpy(points[k].colour.data(), bytes.data() + header_size + 15 * k + 12, 3);
+    }
+    return points;
+}
+
+std::array<guint8, 3> colour_at(unsigned x, unsigned y)
+{
+    return {static_cast<guint8>(x), static_cast<guint8>(y), 200};
+}
+
+/* Rows at 5 dioptres (0.2 m) to 0 (infinity); unknown in the first column. */
+guint16 depth_at(unsigned x, unsigned y)
+{
+    return x == 0 ? 0 : static_cast<guint16>(1 + 65534 * y / (height - 1));
+}
+
+double metres_at(unsigned y)
+{
+    return 1.0 / (5.0 - 5.0 * static_cast<unsigned>(65534 * y / (height - 1)) / 65534.0);
+}
+
+class Calibration {
+public:
+    explicit Calibration(const std::string &distortion)
+        : file(testing::TempDir() + "camera" + std::to_string(getpid()) + ".yml")
+    {
+        std::ofstream(file)
+            << "%YAML:1.0\n---\nimage_width: 128\nimage_height: 96\n"
+               "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+               "   data: [ 120., 0., 66.5, 0., 124., 45.5, 0., 0., 1. ]\n"
+               "distortion_coefficients: !!opencv-matrix\n   rows: 5\n   cols: 1\n   dt: d\n   data: [ "
+            << distortion << " ]\n";
+    }
+    ~Calibration() { unlink(file.c_str()); }
+
+    const std::string file;
+};
+
+/* Of that camera, at half the size. */
+constexpr double fx = 60.0, fy = 62.0, cx = 33.0, cy = 22.5;
+
+EncodedFile cloud(const std::string &properties, const std::string &caps = dioptres)
+{
+    return encode_file("depthplyenc " + properties, width, height, colour_frame(width, height, colour_at),
+                       depth_frame(width, height, depth_at), caps);
+}
+
+} // namespace
+
+TEST(DepthPlyEnc, every_known_pixel_is_a_point_in_metres_where_the_camera_saw_it)
+{
+    const Calibration calibration("-0.2, 0.05, 0.001, -0.002, 0.01");
+    const EncodedFile file = cloud("calibration=" + calibration.file);
+    ASSERT_EQ(file.error, "");
+    const std::vector<Point> points = read_ply(file.bytes);
+    ASSERT_EQ(points.size(), (width - 1) * (height - 1)); /* the last row is at infinity */
+    const cv::Matx33d matrix(fx, 0, cx, 0, fy, cy, 0, 0, 1);
+    const std::vector<double> distortion{-0.2, 0.05, 0.001, -0.002, 0.01};
+    for (const Point &point : points) {
+        const unsigned x = point.colour[0], y = point.colour[1];
+        EXPECT_EQ(point.colour[2], 200);
+        EXPECT_NEAR(point.z, metres_at(y), 1e-4 * metres_at(y));
+        std::vector<cv::Point2d> seen;
+        cv::projectPoints(std::vector{cv::Point3d(point.x, point.y, point.z)}, cv::Vec3d(), cv::Vec3d(),
+                          matrix, distortion, seen);
+        EXPECT_NEAR(seen[0].x, x, 0.01);
+        EXPECT_NEAR(seen[0].y, y, 0.01);
+    }
+}
+
+TEST(DepthPlyEnc, x_points_right_and_y_down)
+{
+    const Calibration calibration("0, 0, 0, 0, 0");
+    for (const Point &point : read_ply(cloud("calibration=" + calibration.file).bytes)) {
+        EXPECT_NEAR(point.x, (point.colour[0] - cx) / fx * point.z, 1e-4 * point.z);
+        EXPECT_NEAR(point.y, (point.colour[1] - cy) / fy * point.z, 1e-4 * point.z);
+    }
+}
+
+TEST(DepthPlyEnc, stride_and_max_distance_leave_points_out)
+{
+    const Calibration calibration("0, 0, 0, 0, 0");
+    const std::vector<Point> points =
+        read_ply(cloud("calibration=" + calibration.file + " stride=5 max-distance=0.5").bytes);
+    EXPECT_EQ(points.size(), 12u * 6u); /* x = 5, 10 ... 60; y = 0, 5 ... 25 */
+    for (const Point &point : points) {
+        EXPECT_EQ(point.colour[0] % 5, 0);
+        EXPECT_EQ(point.colour[1] % 5, 0);
+        EXPECT_LE(point.z, 0.5f);
+    }
+}
+
+TEST(DepthPlyEnc, what_is_missing_is_told)
+{
+    const Calibration calibration("0, 0, 0, 0, 0");
+    EXPECT_NE(cloud("").error.find("set calibration"), std::string::npos);
+    EXPECT_NE(cloud("calibration=/nonexistent.yml").error.find("/nonexistent.yml"), std::string::npos);
+    EXPECT_NE(cloud("calibration=" + calibration.file, ",depth-unit=index").error.find("plane numbers"),
+              std::string::npos);
+}
+
+TEST(DepthPlyEnc, pictures_of_two_sizes_are_refused_by_name)
+{
+    g_autoptr(GstElement) pipeline = gst_parse_launch(
+        "videotestsrc num-buffers=1 ! video/x-raw,format=RGB,width=64,height=48 ! e.color "
+        "videotestsrc num-buffers=1 ! video/x-raw,format=GRAY16_LE,width=32,height=48 ! e.depth "
+        "depthplyenc name=e ! fakesink",
+        nullptr);
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
+        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS));
+    ASSERT_NE(message, nullptr);
+    ASSERT_EQ(GST_MESSAGE_TYPE(message), GST_MESSAGE_ERROR);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    EXPECT_NE(std::string(error->message).find("color is 64x48 and depth is 32x48"), std::string::npos)
+        << error->message;
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+}
