@@ -3,31 +3,43 @@
  *
  * Cost of each plane at each cell, from the focus volumes; flat where there is no texture:
  *
- *     T = max_z F,  S = T - min_z F
+ *     F  = [.7t 2 .7t] / (2 + 1.4t) * focus, along z
+ *     T  = max_z F,  S = T - min_z F
  *     C0 = (T0 - F0) / (T0 + 1.5 med T0 + 4)
  *     C  = C0 + t (1 - k0)^2 (T1 - F1) / (S1 + 4 (med S1 + 0.5)),  k0 = S0 / (S0 + 0.5 (med S0 + 2))
  *
  * F0 is the fine band (focus_volume.cl); F1 the coarse one, SML with taps 2 apart of the blurred colours, which speaks
- * only in noise (t > QUIET) and where the fine one is silent.
+ * only in noise (t > QUIET) and where the fine one is silent. Beside the costs a first guess: u0 = argmin_z box(C0).
+ *
+ * Focus and costs are shorts, the sides of the costs are mirrored; T and S are floats in 1/FOCUS_ONE DN.
  */
 #include "low_picture.cl"
 
-/* Smooths a focus volume by [.7t 2 .7t] / (2 + 1.4t) along z, in place; top = T, range = S.
- * Work-items (1, low height). */
-__kernel void evidence(__global float *focus, __global const Noise *noise, __global float *top,
+/* F at plane z; `cells` are those of plane 0, `plane` apart. */
+INLINE float8 smooth_focus(__global const short *cells, size_t plane, int z, int planes, float side, float centre)
+{
+    return side * (READ_SHORT_CELLS(cells + max(z - 1, 0) * plane) +
+                   READ_SHORT_CELLS(cells + min(z + 1, planes - 1) * plane)) +
+           centre * READ_SHORT_CELLS(cells + z * plane);
+}
+
+#define SIDE_WEIGHT(noise) (0.7f * noise->t / (2.0f + 1.4f * noise->t))
+#define CENTRE_WEIGHT(noise) (2.0f / (2.0f + 1.4f * noise->t))
+
+/* top = T, range = S. Work-items (1, low height). */
+__kernel void evidence(__global const short *focus, __global const Noise *noise, __global float *top,
                        __global float *range, int only_in_noise, int width, int stride, int planes)
 {
     if (only_in_noise && noise->t <= QUIET)
         return;
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    const float side = 0.7f * noise->t / (2.0f + 1.4f * noise->t), centre = 2.0f / (2.0f + 1.4f * noise->t);
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
     for (int x = 0; x < width; x += 8) {
-        __global float *cells = focus + row + x;
-        float8 before = READ_CELLS(cells), here = before, highest = 0.0f, lowest = INFINITY;
+        __global const short *cells = focus + row + x;
+        float8 before = READ_SHORT_CELLS(cells), here = before, highest = 0.0f, lowest = INFINITY;
         for (int z = 0; z < planes; z++) {
-            const float8 after = READ_CELLS(cells + min(z + 1, planes - 1) * plane);
+            const float8 after = READ_SHORT_CELLS(cells + min(z + 1, planes - 1) * plane);
             const float8 smooth = side * (before + after) + centre * here;
-            CELLS(cells + z * plane) = smooth;
             highest = max(highest, smooth);
             lowest = min(lowest, smooth);
             before = here;
@@ -39,11 +51,10 @@ __kernel void evidence(__global float *focus, __global const Noise *noise, __glo
 }
 
 /* value -> share of the cells below it that is wanted, by a histogram whose bins grow with the value: 64 an octave of
- * 1 + scale * value. One work-item. */
+ * 1 + scale * value. */
 #define BINS 1024
 
-__kernel void quantile(__global const float *picture, __global float *result, float share, float scale, int width,
-                       int height, int stride)
+INLINE float quantile_of(__global const float *picture, float share, float scale, int width, int height, int stride)
 {
     uint histogram[BINS];
     for (int i = 0; i < BINS; i++)
@@ -60,72 +71,190 @@ __kernel void quantile(__global const float *picture, __global float *result, fl
     while (bin < BINS - 1 && wanted > histogram[bin])
         wanted -= histogram[bin++];
     const float place = bin + wanted / max(histogram[bin], 1u);
-    *result = (as_float(as_uint(1.0f) + (uint)(place * (1 << 17))) - 1.0f) / scale;
+    return (as_float(as_uint(1.0f) + (uint)(place * (1 << 17))) - 1.0f) / scale;
 }
 
 /* One work-item. */
-__kernel void largest(__global const float *picture, __global float *result, int width, int height, int stride)
+__kernel void quantile(__global const float *picture, __global float *result, float share, float scale, int width,
+                       int height, int stride)
 {
+    *result = quantile_of(picture, share, scale, width, height, stride);
+}
+
+/* medians of two pictures of T or S, in DN; the largest of the second. Work-items (1, 2). */
+__kernel void summarise(__global const float *first, __global const float *second, __global const Noise *noise,
+                        __global float *medians, __global float *largest, int only_in_noise, int width, int height,
+                        int stride)
+{
+    if (only_in_noise && noise->t <= QUIET)
+        return;
+    const int i = (int)get_global_id(1);
+    medians[i] = quantile_of(i ? second : first, 0.5f, 1.0f / FOCUS_ONE, width, height, stride) / FOCUS_ONE;
+    if (i == 0)
+        return;
     float8 highest = 0.0f;
     for (int y = 0; y < height; y++)
         for (int x = 0; x + 8 <= width; x += 8)
-            highest = max(highest, READ_CELLS(picture + (size_t)y * stride + SIDE + x));
+            highest = max(highest, READ_CELLS(second + (size_t)y * stride + SIDE + x));
     const float4 half_of_them = max(highest.lo, highest.hi);
     const float2 quarter = max(half_of_them.lo, half_of_them.hi);
-    *result = max(quarter.x, quarter.y);
+    *largest = max(quarter.x, quarter.y) / FOCUS_ONE;
 }
 
-/* C0 of each plane. Work-items (1, low height, planes). */
-__kernel void fine_cost(__global const float *focus, __global const float *top, __global const float *median_top,
-                        __global float *cost, int width, int stride)
+/* C0 of a row of one plane. */
+INLINE void cost_row(__global const short *focus, __global const float *top, size_t plane, int z, int planes, float side,
+                     float centre, float floor, __global short *cost, int width)
 {
-    const size_t row = get_global_id(1) * stride + SIDE;
-    const size_t plane_row = row + get_global_id(2) * get_global_size(1) * stride;
-    const float floor = 1.5f * *median_top + 4.0f;
     for (int x = 0; x < width; x += 8) {
-        const float8 highest = READ_CELLS(top + row + x);
-        CELLS(cost + plane_row + x) = (highest - READ_CELLS(focus + plane_row + x)) / (highest + floor);
+        const float8 highest = READ_CELLS(top + x);
+        const float8 focused = smooth_focus(focus + x, plane, z, planes, side, centre);
+        HALF_SHORTS(cost + x) = to_shorts(COST_ONE * (highest - focused) / (highest + floor));
     }
+    mirror_short_ends(cost, width);
 }
 
-/* SML with taps 2 apart, the mean of the colours of `small` (blurred, sides mirrored). Work-items (1, low height,
- * planes). */
-__kernel void coarse_focus(__global const float *small, __global const Noise *noise, __global float *focus,
-                           int width, int stride)
+#define BOX 2       /* radius of the first guess's */
+#define RING 8      /* rows of sums kept */
+
+/* C0 of each plane, and the first guess u0 with mirrored sides. One work-item takes `strip` rows: work-items (1, strips);
+ * scratch: RING + 1 + strip rows for each. */
+__kernel void fine_cost(__global const short *focus, __global const float *top, __global const float *median_top,
+                        __global const Noise *noise, __global short *cost, __global short *guess,
+                        __global short *scratch, int width, int height, int stride, int planes, int strip)
+{
+    const int first = (int)get_global_id(1) * strip, last = min(first + strip, height);
+    const size_t plane = (size_t)height * stride;
+    const float floor = (1.5f * *median_top + 4.0f) * FOCUS_ONE;
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
+    __global short *sums = scratch + get_global_id(1) * (RING + 1 + strip) * (size_t)stride + SIDE;
+    __global short *beside = sums + RING * (size_t)stride, *least = beside + stride;
+
+    for (int z = 0; z < planes; z++)
+        for (int y = first - BOX; y < last + BOX; y++) {
+            const size_t row = (size_t)reflect(y, height) * stride + SIDE;
+            __global short *costs = y < first || y >= last ? beside : cost + z * plane + row;
+            cost_row(focus + row, top + row, plane, z, planes, side, centre, floor, costs, width);
+            __global short *newest = sums + (size_t)((y + RING) % RING) * stride;
+            for (int x = 0; x < width; x += 16)
+                SHORTS(newest + x) = READ_SHORTS(costs + x - 2) + READ_SHORTS(costs + x - 1) + READ_SHORTS(costs + x) +
+                                     READ_SHORTS(costs + x + 1) + READ_SHORTS(costs + x + 2);
+            const int done = y - BOX;
+            if (done < first)
+                continue;
+            __global short *best = guess + (size_t)done * stride + SIDE;
+            __global short *best_sum = least + (size_t)(done - first) * stride;
+            for (int x = 0; x < width; x += 16) {
+                short16 sum = 0;
+                UNROLL
+                for (int j = -BOX; j <= BOX; j++)
+                    sum += READ_SHORTS(sums + (size_t)((done + j + RING) % RING) * stride + x);
+                const short16 before = z == 0 ? (short16)SHRT_MAX : READ_SHORTS(best_sum + x);
+                SHORTS(best + x) = select(z == 0 ? (short16)0 : READ_SHORTS(best + x), (short16)(short)z, sum < before);
+                SHORTS(best_sum + x) = min(sum, before);
+            }
+            if (z == planes - 1)
+                mirror_short_ends(best, width);
+        }
+}
+
+/* Gaussian of sigma 1. */
+__constant float gaussian[5] = {0.39905017f, 0.24203622f, 0.05400558f, 0.00443305f, 0.00013383f};
+#define COARSE_BOX 3 /* radius */
+
+/* The blurred colour's row y, sides mirrored. */
+INLINE void blur_row(__global const short *small, int y, int height, __global float *half_blurred,
+                     __global float *blurred, int width, int stride)
+{
+    for (int x = 0; x < width; x += 8) {
+        float8 sum = gaussian[0] * READ_SHORT_CELLS(small + (size_t)y * stride + x);
+        UNROLL
+        for (int i = 1; i <= 4; i++)
+            sum += gaussian[i] * (READ_SHORT_CELLS(small + (size_t)reflect(y - i, height) * stride + x) +
+                                  READ_SHORT_CELLS(small + (size_t)reflect(y + i, height) * stride + x));
+        CELLS(half_blurred + x) = sum;
+    }
+    mirror_ends(half_blurred, width);
+    for (int x = 0; x < width; x += 8) {
+        float8 sum = gaussian[0] * READ_CELLS(half_blurred + x);
+        UNROLL
+        for (int i = 1; i <= 4; i++)
+            sum += gaussian[i] * (READ_CELLS(half_blurred + x - i) + READ_CELLS(half_blurred + x + i));
+        CELLS(blurred + x) = sum;
+    }
+    mirror_ends(blurred, width);
+}
+
+/* F1 before it is smoothed along z: the mean over the colours of SML with taps 2 apart, in a box. One work-item takes
+ * `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each. */
+__kernel void coarse_focus(__global const short *small, __global const Noise *noise, __global short *focus,
+                           __global float *scratch, int width, int height, int stride, int strip)
 {
     if (noise->t <= QUIET)
         return;
-    const int y = (int)get_global_id(1), height = (int)get_global_size(1);
+    const int z = (int)get_global_id(2), first = (int)get_global_id(1) * strip, last = min(first + strip, height);
+    const int top = max(first - COARSE_BOX, 0), bottom = min(last + COARSE_BOX, height);
+    const int blurred_top = max(top - 2, 0), blurred_bottom = min(bottom + 2, height);
     const size_t picture = (size_t)height * stride;
-    __global float *out = focus + get_global_id(2) * picture + (size_t)y * stride + SIDE;
-    for (int x = 0; x < width; x += 8) {
-        float8 sum = 0.0f;
-        for (int colour = 0; colour < 3; colour++) {
-            __global const float *plane = small + (3 * get_global_id(2) + colour) * picture + SIDE + x;
-            __global const float *row = plane + (size_t)y * stride;
-            const float8 twice = 2.0f * READ_CELLS(row);
-            sum += fabs(twice - READ_CELLS(row - 2) - READ_CELLS(row + 2)) +
-                   fabs(twice - READ_CELLS(plane + (size_t)clamp(mirror(y - 2, height), 0, height - 1) * stride) -
-                        READ_CELLS(plane + (size_t)clamp(mirror(y + 2, height), 0, height - 1) * stride));
+    __global float *blurred =
+        scratch + (get_global_id(2) * get_global_size(1) + get_global_id(1)) * 2 * (strip + 10) * (size_t)stride + SIDE;
+    __global float *sharpness = blurred + (strip + 10) * (size_t)stride, *spare = sharpness + (strip + 8) * (size_t)stride;
+
+    for (int colour = 0; colour < 3; colour++) {
+        for (int y = blurred_top; y < blurred_bottom; y++)
+            blur_row(small + (3 * z + colour) * picture + SIDE, y, height, spare,
+                     blurred + (size_t)(y - blurred_top) * stride, width, stride);
+        for (int y = top; y < bottom; y++) {
+            __global const float *row = blurred + (size_t)(y - blurred_top) * stride;
+            __global const float *above = blurred + (size_t)(clamp(mirror(y - 2, height), 0, height - 1) - blurred_top) * stride;
+            __global const float *below = blurred + (size_t)(clamp(mirror(y + 2, height), 0, height - 1) - blurred_top) * stride;
+            __global float *out = sharpness + (size_t)(y - top) * stride;
+            for (int x = 0; x < width; x += 8) {
+                const float8 twice = 2.0f * READ_CELLS(row + x);
+                const float8 sml = fabs(twice - READ_CELLS(row + x - 2) - READ_CELLS(row + x + 2)) +
+                                   fabs(twice - READ_CELLS(above + x) - READ_CELLS(below + x));
+                CELLS(out + x) = colour == 0 ? sml : READ_CELLS(out + x) + sml;
+            }
+            if (colour == 2)
+                mirror_ends(out, width);
         }
-        CELLS(out + x) = sum * (1.0f / 3.0f);
+    }
+    const float unit = (float)FOCUS_ONE / COLOUR_ONE / 3 / ((2 * COARSE_BOX + 1) * (2 * COARSE_BOX + 1));
+    for (int y = first; y < last; y++) {
+        for (int x = -8; x < width + 8; x += 8) {
+            float8 sum = 0.0f;
+            UNROLL
+            for (int j = -COARSE_BOX; j <= COARSE_BOX; j++)
+                sum += READ_CELLS(sharpness + (size_t)(reflect(y + j, height) - top) * stride + x);
+            CELLS(spare + x) = unit * sum;
+        }
+        for (int x = 0; x < width; x += 8) {
+            float8 sum = 0.0f;
+            UNROLL
+            for (int i = -COARSE_BOX; i <= COARSE_BOX; i++)
+                sum += READ_CELLS(spare + x + i);
+            HALF_SHORTS(focus + z * picture + (size_t)y * stride + SIDE + x) = to_shorts(sum);
+        }
     }
 }
 
-/* C = C0 and, in noise, the coarse band's cost. medians: of S0 and of S1. Work-items (1, low height, planes). */
-__kernel void add_coarse_cost(__global const float *fine_cost, __global const float *focus, __global const float *top,
-                              __global const float *fine_range, __global const float *range,
-                              __global const float *median_fine_range, __global const float *median_range,
-                              __global const Noise *noise, __global float *cost, int width, int stride)
+/* C from C0, in place. medians: of S0 and of S1, the second of two each. Work-items (1, low height, planes). */
+__kernel void add_coarse_cost(__global const short *focus, __global const float *top, __global const float *fine_range,
+                              __global const float *range, __global const float *fine_medians,
+                              __global const float *medians, __global const Noise *noise, __global short *cost,
+                              int width, int stride)
 {
-    const size_t row = get_global_id(1) * stride + SIDE;
-    const size_t plane_row = row + get_global_id(2) * get_global_size(1) * stride;
-    const float silence = 0.5f * (*median_fine_range + 2.0f), floor = 4.0f * (*median_range + 0.5f);
-    const float share = noise->t > QUIET ? noise->t : 0.0f;
+    if (noise->t <= QUIET)
+        return;
+    const int z = (int)get_global_id(2), planes = (int)get_global_size(2);
+    const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
+    const float silence = 0.5f * (fine_medians[1] + 2.0f) * FOCUS_ONE, floor = 4.0f * (medians[1] + 0.5f) * FOCUS_ONE;
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise), share = noise->t * COST_ONE;
+    __global short *costs = cost + z * plane + row;
     for (int x = 0; x < width; x += 8) {
         const float8 silent = silence / (READ_CELLS(fine_range + row + x) + silence); /* 1 - k0 */
-        const float8 coarse = (READ_CELLS(top + row + x) - READ_CELLS(focus + plane_row + x)) /
+        const float8 coarse = (READ_CELLS(top + row + x) - smooth_focus(focus + row + x, plane, z, planes, side, centre)) /
                               (READ_CELLS(range + row + x) + floor);
-        CELLS(cost + plane_row + x) = READ_CELLS(fine_cost + plane_row + x) + share * silent * silent * coarse;
+        HALF_SHORTS(costs + x) += to_shorts(share * silent * silent * coarse);
     }
+    mirror_short_ends(costs, width);
 }

@@ -5,182 +5,256 @@
  *
  *     F0_z = area-downsample_SCALE(box_RADIUS(SML(g * I_z))),  SML(I) = |[-1 2 -1] * I|_x + |.|_y,  RADIUS = SCALE / 2
  *
- * g is the pre-blur that the noise asks for. Box and downsampling together are one separable filter of REACH samples
- * with the weights of WEIGHT(), taken over columns first (focus_columns, at full width) and then over rows.
+ * g is the pre-blur that the noise asks for. Box and downsampling together weigh 2 SCALE samples by 1 2 .. SCALE SCALE .. 2 1
+ * in each direction: of the groups of SCALE samples that begin RADIUS before a cell's, cell i adds up group i with rising
+ * weights and group i + 1 with falling ones.
  *
  * I is SAMPLE: uchar luma, or ushort thirds of a DN (the sum of R, G, B). 16 columns are worked on at a time, in lanes
- * of 16 bits. One work-item takes a strip of STRIP low rows of one plane: work-items (1, strips, planes).
+ * of 16 bits. One work-item takes `strip` low rows of one plane: work-items (1, strips, planes); it keeps rows in
+ * `scratch`, whose rows have room for `width` samples and PAD at both ends.
  */
 #include "low_picture.cl"
 
 #define RADIUS (SCALE / 2)
-#define REACH (SCALE + 2 * RADIUS)
-#define WEIGHT(k) min(min((k) + 1, REACH - (k)), SCALE)
-#define WEIGHTS (SCALE * (2 * RADIUS + 1))
+#define WEIGHTS (SCALE * (SCALE + 1))
+#define PAD 16
 
-typedef short16 short16_anywhere __attribute__((aligned(2)));
+/* Rows of scratch: samples turned into thirds, samples blurred (rings), one blurred over columns only, the last group's
+ * sums over columns (two, in turn), the low row's sums over columns. */
+#define RING (SCALE <= 4 ? 8 : 16)
+#define BLURRED_RING RING
+#define HALF_BLURRED (2 * RING)
+#define RISING (2 * RING + 1)
+#define COLUMNS (2 * RING + 3)
+#define SCRATCH_ROWS (2 * RING + 4)
+
 typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 typedef uchar16 uchar16_anywhere __attribute__((aligned(1)));
 
-#define READ_SAMPLES(pointer) convert_short16(*(__global const SAMPLES_ANYWHERE *)(pointer))
-#define READ_SHORTS(pointer) (*(__global const short16_anywhere *)(pointer))
-
-inline __global const SAMPLE *row_of(__global const uchar *stack, ulong2 rows, int y)
-{
-    return (__global const SAMPLE *)(stack + rows.x + rows.y * (ulong)y);
-}
-
-inline short16 magnitude(short16 v)
-{
-    return max(v, -v);
-}
-
-/* R + G + B of interleaved colours, or luma of 16 bits as 765ths. Work-items (1, height, planes). */
-__kernel void thirds(__global const uchar *stack, __global const ulong2 *rows, __global ushort *sums, int width,
-                     int4 channels)
-{
-    const int y = (int)get_global_id(1), z = (int)get_global_id(2);
-    __global const uchar *row = stack + rows[z].x + rows[z].y * (ulong)y;
-    __global ushort *out = sums + ((size_t)z * get_global_size(1) + y) * width;
-#ifdef GRAY16
-    for (int x = 0; x < width; x++)
-        out[x] = (ushort)(((row[2 * x] | (uint)row[2 * x + 1] << 8) * 765u + 32768u) >> 16);
-#else
-    for (int x = 0; x < width; x++) {
-        __global const uchar *pixel = row + x * channels.s0;
-        out[x] = (ushort)(pixel[0] + pixel[1] + pixel[2]);
-    }
-#endif
-}
-
-/* Both blurs are in fixed point: taps in 1/64, columns leave COLUMN_SHIFT bits, rows 4 bits. A blurred sample is 16 DN
- * (uchar) or 12 DN (thirds). Work-items (1, height, planes). */
-__kernel void blur_columns(__global const uchar *stack, __global const ulong2 *rows, __global const Noise *noise,
-                           __global ushort *blurred, int width)
-{
-    const int y = (int)get_global_id(1), z = (int)get_global_id(2), height = (int)get_global_size(1);
-    const ushort centre = (ushort)noise->taps[0];
-    if (centre == 64)
-        return;
-    __global const SAMPLE *line[7];
-    for (int i = -3; i <= 3; i++)
-        line[i + 3] = row_of(stack, rows[z], mirror(y + i, height));
-    __global ushort *out = blurred + ((size_t)z * height + y) * width;
-    const ushort near = (ushort)noise->taps[1], far = (ushort)noise->taps[2], farthest = (ushort)noise->taps[3];
-    for (int block = 0; block < width; block += 16) {
-        const int x = min(block, width - 16);
-        const ushort16 sum =
-            as_ushort16(READ_SAMPLES(line[3] + x)) * centre +
-            as_ushort16(READ_SAMPLES(line[2] + x) + READ_SAMPLES(line[4] + x)) * near +
-            as_ushort16(READ_SAMPLES(line[1] + x) + READ_SAMPLES(line[5] + x)) * far +
-            as_ushort16(READ_SAMPLES(line[0] + x) + READ_SAMPLES(line[6] + x)) * farthest;
-        *(__global ushort16_anywhere *)(out + x) = sum >> (ushort)COLUMN_SHIFT;
-    }
-}
-
-/* Columns 0 .. 2 and the last three stay as they are. */
-__kernel void blur_rows(__global const ushort *source, __global const Noise *noise, __global ushort *blurred,
-                        int width)
-{
-    const ushort centre = (ushort)noise->taps[0];
-    if (centre == 64)
-        return;
-    const size_t row = (get_global_id(2) * get_global_size(1) + get_global_id(1)) * (size_t)width;
-    const ushort near = (ushort)noise->taps[1], far = (ushort)noise->taps[2], farthest = (ushort)noise->taps[3];
-    for (int i = 0; i < 3; i++) {
-        blurred[row + i] = source[row + i] << 2;
-        blurred[row + width - 1 - i] = source[row + width - 1 - i] << 2;
-    }
-    for (int block = 3; block < width - 3; block += 16) {
-        const int x = min(block, width - 19);
-        __global const ushort *in = source + row + x;
-        const ushort16 sum =
-            as_ushort16(READ_SHORTS(in)) * centre +
-            as_ushort16(READ_SHORTS(in - 1) + READ_SHORTS(in + 1)) * near +
-            as_ushort16(READ_SHORTS(in - 2) + READ_SHORTS(in + 2)) * far +
-            as_ushort16(READ_SHORTS(in - 3) + READ_SHORTS(in + 3)) * farthest;
-        *(__global ushort16_anywhere *)(blurred + row + x) = sum >> (ushort)4;
-    }
-}
-
-/* Adds SML to the sums of the low row that ends here and of the one that begins. LOAD reads 16 samples. */
-#define FOCUS_COLUMNS(SHIFT, LOAD, POINTER_TO)                                                                         \
-    for (int block = 1; block < width - 1; block += 16) {                                                              \
-        const int x = min(block, width - 17);                                                                          \
-        int y = first * SCALE - RADIUS;                                                                                \
-        short16 above = LOAD(POINTER_TO(mirror(y - 1, height)) + x);                                                   \
-        short16 here = LOAD(POINTER_TO(mirror(y, height)) + x);                                                        \
-        ushort16 sum = 0, next_sum = 0;                                                                                \
-        for (int k = 0; k < 2 * RADIUS; k++, y++) {                                                                    \
-            SML(SHIFT, LOAD, POINTER_TO)                                                                               \
-            sum += sml * (ushort)WEIGHT(k);                                                                            \
-        }                                                                                                              \
-        for (int i = first; i < last; i++) {                                                                           \
-            next_sum = 0;                                                                                              \
-            for (int k = 0; k < SCALE; k++, y++) {                                                                     \
-                SML(SHIFT, LOAD, POINTER_TO)                                                                           \
-                sum += sml * (ushort)WEIGHT(2 * RADIUS + k);                                                           \
-                next_sum += sml * (ushort)WEIGHT(k + 2 * RADIUS - SCALE);                                              \
-            }                                                                                                          \
-            *(__global ushort16_anywhere *)(out + (size_t)i * width + x) = sum;                                        \
-            sum = next_sum;                                                                                            \
-        }                                                                                                              \
-    }
-
-#define SML(SHIFT, LOAD, POINTER_TO)                                                                                   \
-    const int row = mirror(y, height);                                                                                 \
-    const short16 below = LOAD(POINTER_TO(mirror(y + 1, height)) + x);                                                 \
-    const short16 twice = here + here;                                                                                 \
-    const short16 dx = twice - LOAD(POINTER_TO(row) + x - 1) - LOAD(POINTER_TO(row) + x + 1);                          \
-    const short16 dy = twice - above - below;                                                                          \
-    const ushort16 sml = min(as_ushort16(magnitude(dx) + magnitude(dy)) >> (ushort)SHIFT, (ushort16)LARGEST_SML);      \
-    above = here;                                                                                                      \
-    here = below;
+#define READ_BYTES(pointer) convert_short16(*(__global const uchar16_anywhere *)(pointer))
+#define USHORTS(pointer) (*(__global ushort16_anywhere *)(pointer))
+#define READ_USHORTS(pointer) (*(__global const ushort16_anywhere *)(pointer))
 
 /* So that WEIGHTS of them fit 16 bits. */
 #define LARGEST_SML (65535 / WEIGHTS)
 
-/* columns ushort[planes][low height][width]; the first and the last column are not written. */
-__kernel void focus_columns(__global const uchar *stack, __global const ulong2 *rows, __global const Noise *noise,
-                            __global ushort *columns, int width, int height, int low_height)
+INLINE short16 magnitude(short16 v)
 {
-    if (noise->taps[0] != 64)
-        return;
-    const int z = (int)get_global_id(2), first = (int)get_global_id(1) * STRIP, last = min(first + STRIP, low_height);
-    __global ushort *out = columns + (size_t)z * low_height * width;
-#define STACK_ROW(y) row_of(stack, rows[z], y)
-    FOCUS_COLUMNS(0, READ_SAMPLES, STACK_ROW)
+    return max(v, -v);
 }
 
-/* The same from the blurred stack, in 4 DN (uchar) or thirds. */
-__kernel void focus_columns_blurred(__global const ushort *blurred, __global const Noise *noise,
-                                    __global ushort *columns, int width, int height, int low_height)
+/* Runs over a row's samples from `first` to `last` in 16s, of which the last may overlap those before. */
+#define FOR_SAMPLES(x, first, last)                                                                                    \
+    for (int x = (first); x < (last); x = x + 16 < (last) ? min(x + 16, (last) - 16) : (last))
+
+/* Sums SML, LARGEST at most, over a group of rows; ROW(k), k = -1 .. SCALE, points at them. Writes the low row that ends with this group to
+ * `columns` and keeps what the next one begins with in `rising`. */
+#define ADD_GROUP(ROW, READ, SHIFT, LARGEST)                                                                                    \
+    FOR_SAMPLES(x, 1, width - 1)                                                                                       \
+    {                                                                                                                  \
+        short16 above = READ(ROW(-1) + x), here = READ(ROW(0) + x);                                                    \
+        ushort16 sum = 0, rising_sum = 0;                                                                              \
+        UNROLL                                                                                                         \
+        for (int k = 0; k < SCALE; k++) {                                                                              \
+            const short16 below = READ(ROW(k + 1) + x);                                                                \
+            const short16 twice = here + here;                                                                         \
+            const short16 dx = twice - READ(ROW(k) + x - 1) - READ(ROW(k) + x + 1), dy = twice - above - below;        \
+            const ushort16 sml = as_ushort16(magnitude(dx) + magnitude(dy)) >> (ushort)SHIFT;                          \
+            const ushort16 bounded = (LARGEST) <= LARGEST_SML ? sml : min(sml, (ushort16)LARGEST_SML);                  \
+            sum += bounded;                                                                                            \
+            rising_sum += bounded * (ushort)(k + 1);                                                                   \
+            above = here;                                                                                              \
+            here = below;                                                                                              \
+        }                                                                                                              \
+        USHORTS(columns + x) = READ_USHORTS(rising + x) + (sum * (ushort)(SCALE + 1) - rising_sum);                    \
+        USHORTS(next_rising + x) = rising_sum;                                                                         \
+    }
+
+/* Repeats the first and last SML of a low row outward, where there is none. */
+INLINE void extend_columns(__global ushort *columns, int width)
 {
-    if (noise->taps[0] == 64)
-        return;
-    const int z = (int)get_global_id(2), first = (int)get_global_id(1) * STRIP, last = min(first + STRIP, low_height);
-    __global ushort *out = columns + (size_t)z * low_height * width;
-    __global const ushort *plane = blurred + (size_t)z * height * width;
-#define BLURRED_ROW(y) (plane + (size_t)(y) * width)
-    FOCUS_COLUMNS(2, READ_SHORTS, BLURRED_ROW)
+    const ushort16 first = columns[1], last = columns[width - 2];
+    USHORTS(columns - 15) = first;
+    USHORTS(columns + width - 1) = last;
 }
 
-/* F0 in DN from the column sums. Work-items (1, low height, planes). */
-__kernel void focus_rows(__global const ushort *columns, __global const Noise *noise, __global float *focus, int width,
-                         int low_width, int stride)
+/* The i-th samples of 8 groups of SCALE, which begin at `groups`. */
+INLINE void part_groups(__global const ushort *groups, uint8 *parts)
 {
-    const size_t row = get_global_id(2) * get_global_size(1) + get_global_id(1);
-    __global const ushort *in = columns + row * width;
-    __global float *out = focus + row * stride + SIDE;
-    const float unit = 1.0f / ((noise->taps[0] == 64 ? SAMPLES_A_DN : BLURRED_SAMPLES_A_DN) * WEIGHTS * WEIGHTS);
-    for (int i = 0; i < low_width; i++) {
-        uint sum = 0;
-        if (i > 0 && i < low_width - 1)
-            for (int k = 0; k < REACH; k++)
-                sum += WEIGHT(k) * (uint)in[i * SCALE - RADIUS + k];
-        else
-            for (int k = 0; k < REACH; k++)
-                sum += WEIGHT(k) * (uint)in[clamp(i * SCALE - RADIUS + k, 1, width - 2)];
-        out[i] = unit * sum;
+#if SCALE == 2
+    const ushort16 all = READ_USHORTS(groups);
+    parts[0] = convert_uint8(all.even);
+    parts[1] = convert_uint8(all.odd);
+#else
+    for (int half_of_them = 0; half_of_them < SCALE / 4; half_of_them++) {
+#if SCALE == 4
+        const ushort16 left = READ_USHORTS(groups), right = READ_USHORTS(groups + 16);
+#else
+        const ushort16 v0 = READ_USHORTS(groups + 4 * half_of_them), v1 = READ_USHORTS(groups + 4 * half_of_them + 16),
+                       v2 = READ_USHORTS(groups + 4 * half_of_them + 32),
+                       v3 = READ_USHORTS(groups + 4 * half_of_them + 48);
+        const ushort16 left = (ushort16)(v0.s0123, v0.s89ab, v1.s0123, v1.s89ab);
+        const ushort16 right = (ushort16)(v2.s0123, v2.s89ab, v3.s0123, v3.s89ab);
+#endif
+        const ushort16 even = (ushort16)(left.even, right.even), odd = (ushort16)(left.odd, right.odd);
+        parts[4 * half_of_them] = convert_uint8(even.even);
+        parts[4 * half_of_them + 1] = convert_uint8(odd.even);
+        parts[4 * half_of_them + 2] = convert_uint8(even.odd);
+        parts[4 * half_of_them + 3] = convert_uint8(odd.odd);
+    }
+#endif
+}
+
+/* A low row of F0 from its sums over columns, times `unit`. */
+INLINE void sum_groups(__global const ushort *columns, __global short *focus, int low_width, float unit)
+{
+    for (int x = 0; x < low_width; x += 8) {
+        const int i = min(x, max(low_width - 8, 0));
+        uint8 parts[SCALE], rising = 0, falling = 0;
+        part_groups(columns + i * SCALE - RADIUS, parts);
+        UNROLL
+        for (int k = 0; k < SCALE; k++)
+            rising += parts[k] * (uint)(k + 1);
+        part_groups(columns + (i + 1) * SCALE - RADIUS, parts);
+        UNROLL
+        for (int k = 0; k < SCALE; k++)
+            falling += parts[k] * (uint)(SCALE - k);
+        const float8 sum = convert_float8(convert_int8(rising + falling));
+        HALF_SHORTS(focus + i) = to_shorts(unit * sum);
+    }
+}
+
+INLINE __global ushort *scratch_row(__global ushort *scratch, int index, int width)
+{
+    return scratch + (size_t)index * (width + 2 * PAD) + PAD;
+}
+
+INLINE void clear(__global ushort *row, int width)
+{
+    FOR_SAMPLES(x, 0, width)
+        USHORTS(row + x) = 0;
+}
+
+#define IS_WANTED(z) (wanted >> (z) & 1 || noise->is_new)
+
+/* In silence, from luma of 8 bits where it lies. Planes whose bit of `wanted` is not set stay as they are, unless the
+ * noise has changed. */
+__kernel void focus_volume(__global const uchar *stack, __global const ulong2 *rows, __global const Noise *noise,
+                           ulong wanted, __global ushort *scratch, __global short *focus, int width, int height,
+                           int low_width, int low_height, int stride, int strip)
+{
+    const int z = (int)get_global_id(2), first = (int)get_global_id(1) * strip, last = min(first + strip, low_height);
+    if (noise->taps[0] != 64 || !IS_WANTED(z))
+        return;
+    scratch += (z * get_global_size(1) + get_global_id(1)) * SCRATCH_ROWS * (size_t)(width + 2 * PAD);
+    __global ushort *columns = scratch_row(scratch, COLUMNS, width);
+    const float unit = (float)FOCUS_ONE / (WEIGHTS * WEIGHTS);
+    clear(scratch_row(scratch, RISING + first % 2, width), width);
+    for (int group = first; group <= last; group++) {
+        __global const ushort *rising = scratch_row(scratch, RISING + group % 2, width);
+        __global ushort *next_rising = scratch_row(scratch, RISING + 1 - group % 2, width);
+        __global const uchar *lines[SCALE + 2];
+        for (int k = -1; k <= SCALE; k++)
+            lines[k + 1] = stack + rows[z].x + rows[z].y * (ulong)mirror(group * SCALE - RADIUS + k, height);
+#define LINE(k) lines[(k) + 1]
+        ADD_GROUP(LINE, READ_BYTES, 0, 4 * 255)
+        if (group == first)
+            continue; /* the groups before are another strip's */
+        extend_columns(columns, width);
+        sum_groups(columns, focus + ((size_t)z * low_height + group - 1) * stride + SIDE, low_width, unit);
+    }
+}
+
+#ifdef THIRDS
+/* R + G + B of interleaved colours, or luma of 16 bits as 765ths. */
+INLINE void make_thirds(__global const uchar *row, __global ushort *thirds, int width, int4 channels)
+{
+#ifdef GRAY16
+    for (int x = 0; x < width; x++)
+        thirds[x] = (ushort)(((row[2 * x] | (uint)row[2 * x + 1] << 8) * 765u + 32768u) >> 16);
+#else
+    for (int x = 0; x < width; x++) {
+        __global const uchar *pixel = row + x * channels.s0;
+        thirds[x] = (ushort)(pixel[0] + pixel[1] + pixel[2]);
+    }
+#endif
+}
+#define SAMPLE ushort
+#define READ_SAMPLES(pointer) as_ushort16(READ_SHORTS(pointer))
+#define COLUMN_SHIFT 6 /* leaves thirds; rows then leave a quarter of that */
+#define BLURRED_A_DN 3
+#else
+#define SAMPLE uchar
+#define READ_SAMPLES(pointer) convert_ushort16(*(__global const uchar16_anywhere *)(pointer))
+#define COLUMN_SHIFT 4 /* leaves 1/4 DN; rows then a quarter of that */
+#define BLURRED_A_DN 4
+#endif
+
+/* g over columns: 16 samples of a row from those above and below. Taps in 1/64. */
+#define BLUR_16(READ, line, x, shift)                                                                            \
+    ((READ(line(0) + (x)) * centre + (READ(line(-1) + (x)) + READ(line(1) + (x))) * near +                             \
+      (READ(line(-2) + (x)) + READ(line(2) + (x))) * far + (READ(line(-3) + (x)) + READ(line(3) + (x))) * farthest) >> \
+     (ushort)(shift))
+
+/* The same in noise, or from other formats. */
+__kernel void focus_volume_prepared(__global const uchar *stack, __global const ulong2 *rows, int4 channels,
+                                    __global const Noise *noise, ulong wanted, __global ushort *scratch,
+                                    __global short *focus, int width, int height, int low_width, int low_height,
+                                    int stride, int strip)
+{
+    const int z = (int)get_global_id(2), first = (int)get_global_id(1) * strip, last = min(first + strip, low_height);
+    const ushort centre = (ushort)noise->taps[0], near = (ushort)noise->taps[1], far = (ushort)noise->taps[2],
+                 farthest = (ushort)noise->taps[3];
+#ifndef THIRDS
+    if (centre == 64)
+        return;
+#endif
+    if (!IS_WANTED(z))
+        return;
+    scratch += (z * get_global_size(1) + get_global_id(1)) * SCRATCH_ROWS * (size_t)(width + 2 * PAD);
+    __global ushort *columns = scratch_row(scratch, COLUMNS, width);
+    __global ushort *half_blurred = scratch_row(scratch, HALF_BLURRED, width);
+    const int top = first * SCALE - RADIUS - 1;
+    const float unit = (float)FOCUS_ONE / (WEIGHTS * WEIGHTS * BLURRED_A_DN);
+    int thirds_ready = top - 3, blurred_ready = top;
+
+    clear(scratch_row(scratch, RISING + first % 2, width), width);
+    for (int group = first; group <= last; group++) {
+        const int y = group * SCALE - RADIUS;
+        for (; blurred_ready <= y + SCALE; blurred_ready++) {
+            __global ushort *blurred = scratch_row(scratch, BLURRED_RING + (blurred_ready + 64) % RING, width);
+            __global const SAMPLE *lines[7];
+#ifdef THIRDS
+            for (; thirds_ready <= blurred_ready + 3; thirds_ready++)
+                make_thirds(stack + rows[z].x + rows[z].y * (ulong)mirror(thirds_ready, height),
+                            scratch_row(scratch, (thirds_ready + 64) % RING, width), width, channels);
+            for (int i = -3; i <= 3; i++)
+                lines[i + 3] = scratch_row(scratch, (blurred_ready + i + 64) % RING, width);
+#else
+            for (int i = -3; i <= 3; i++)
+                lines[i + 3] = stack + rows[z].x + rows[z].y * (ulong)mirror(blurred_ready + i, height);
+#endif
+#define SAMPLES_OF(i) lines[(i) + 3]
+#define HALF_BLURRED_AT(i) (half_blurred + (i))
+            FOR_SAMPLES(x, 0, width)
+                USHORTS(half_blurred + x) = BLUR_16(READ_SAMPLES, SAMPLES_OF, x, COLUMN_SHIFT);
+            for (int i = 1; i <= 3; i++) {
+                half_blurred[-i] = half_blurred[i];
+                half_blurred[width - 1 + i] = half_blurred[width - 1 - i];
+            }
+            FOR_SAMPLES(x, 0, width)
+                USHORTS(blurred + x) = BLUR_16(READ_USHORTS, HALF_BLURRED_AT, x, 4);
+        }
+        __global const ushort *rising = scratch_row(scratch, RISING + group % 2, width);
+        __global ushort *next_rising = scratch_row(scratch, RISING + 1 - group % 2, width);
+        __global const ushort *ready[SCALE + 2];
+        for (int k = -1; k <= SCALE; k++)
+            ready[k + 1] = scratch_row(scratch, BLURRED_RING + (y + k + 64) % RING, width);
+#define READY(k) ready[(k) + 1]
+        ADD_GROUP(READY, READ_SHORTS, 2, 4 * 255 * BLURRED_A_DN)
+        if (group == first)
+            continue;
+        extend_columns(columns, width);
+        sum_groups(columns, focus + ((size_t)z * low_height + group - 1) * stride + SIDE, low_width, unit);
     }
 }

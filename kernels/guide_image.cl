@@ -1,118 +1,128 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The guide A at 1/SCALE: all small planes blended at a first guess of the depth, taken on its nearer side, since an
- * occlusion edge is sharp in the plane of its nearer side:
+ * The guide A at 1/SCALE: all small planes blended at a depth, first at a guess of it (u0 of cost_volume.cl), taken on
+ * its nearer side, since an occlusion edge is sharp in the plane of its nearer side:
  *
- *     u0 = argmin_z box(C0),  u = min_3x3(median_5x5(u0)),  A = sum_z w_z small_z / sum_z w_z,
+ *     u = min_3x3(median_5x5(u0)),  A = sum_z w_z small_z / sum_z w_z,
  *     w_z = exp(-(z - u)^2 / (2 s^2)),  s = .6 + .3 t;   in noise A is filtered bilaterally, range 4 sigma / SCALE
  */
 #include "low_picture.cl"
 
-/* Work-items (1, low height). */
-__kernel void cheapest_plane(__global const float *cost, __global float *u, int width, int stride, int planes)
-{
-    const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    for (int x = 0; x < width; x += 8) {
-        float8 least = READ_CELLS(cost + row + x), best = 0.0f;
-        for (int z = 1; z < planes; z++) {
-            const float8 value = READ_CELLS(cost + z * plane + row + x);
-            best = select(best, (float8)(z), value < least);
-            least = min(least, value);
-        }
-        CELLS(u + row + x) = best;
-    }
-}
+#define REACH 3.5f    /* times s: weights beyond are below 0.3 % */
+#define DENOISED 0.3f /* DN of noise above which the guide is filtered */
 
 /* Sorts the least to the front and the greatest to the end. */
-inline void part_extremes(float8 *values, int count)
+INLINE void part_extremes(short16 *values, int count)
 {
+    UNROLL
     for (int i = 0; i < count / 2; i++) {
-        const float8 a = values[i], b = values[count - 1 - i];
+        const short16 a = values[i], b = values[count - 1 - i];
         values[i] = min(a, b);
         values[count - 1 - i] = max(a, b);
     }
+    UNROLL
     for (int i = 1; i <= (count - 1) / 2; i++) {
-        const float8 a = values[0], b = values[i];
+        const short16 a = values[0], b = values[i];
         values[0] = min(a, b);
         values[i] = max(a, b);
     }
+    UNROLL
     for (int i = count / 2; i < count - 1; i++) {
-        const float8 a = values[i], b = values[count - 1];
+        const short16 a = values[i], b = values[count - 1];
         values[i] = min(a, b);
         values[count - 1] = max(a, b);
     }
 }
 
-/* Median 5x5 by forgetting: of 14 values the extremes cannot be the median of 25. The sides of u must be mirrored.
- * Work-items (1, low height). */
-__kernel void median_5x5(__global const float *u, __global float *median, int width, int stride)
+/* Median 5x5 by forgetting: of 14 values the extremes cannot be the median of 25. The sides of u are mirrored, before and
+ * after. Work-items (1, low height). */
+__kernel void median_5x5(__global const short *u, __global float *median, int width, int stride)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
-    for (int x = 0; x < width; x += 8) {
-        float8 values[14];
-#define VALUE(k) READ_CELLS(u + (size_t)reflect(y + (k) / 5 - 2, height) * stride + SIDE + x + (k) % 5 - 2)
+    __global float *out = median + (size_t)y * stride + SIDE;
+    for (int x = 0; x < width; x += 16) {
+        short16 values[14];
+#define VALUE(k) READ_SHORTS(u + (size_t)reflect(y + (k) / 5 - 2, height) * stride + SIDE + x + (k) % 5 - 2)
+        UNROLL
         for (int k = 0; k < 14; k++)
             values[k] = VALUE(k);
+        UNROLL
         for (int k = 14; k < 25; k++) {
             part_extremes(values, 28 - k);
             values[0] = VALUE(k);
         }
         part_extremes(values, 3);
-        CELLS(median + (size_t)y * stride + SIDE + x) = values[1];
+        CELLS(out + x) = convert_float8(values[1].lo);
+        CELLS(out + x + 8) = convert_float8(values[1].hi);
     }
+    mirror_ends(out, width);
 }
 
-/* The sides of u must be mirrored. Work-items (1, low height). */
-__kernel void nearest_3x3(__global const float *u, __global float *nearer, int width, int stride)
+INLINE int any_of(int8 truth)
+{
+    const long4 parts = as_long4(truth);
+    return (parts.s0 | parts.s1 | parts.s2 | parts.s3) != 0;
+}
+
+/* nearer = min_3x3(u), guide[colour] = A before the bilateral filter, which goes to `silent_guide` where there will be
+ * none. All sides are mirrored, before and after. Work-items (1, low height). */
+__kernel void blend_planes(__global const short *small, __global const float *u, __global const Noise *noise,
+                           __global float *nearer, __global float *guide, __global float *silent_guide, int width,
+                           int stride, int planes)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
+    const size_t row = (size_t)y * stride + SIDE, picture = (size_t)height * stride;
+    const float s = 0.6f + 0.3f * noise->t, steepness = -1.0f / (2.0f * s * s), reach = REACH * s;
+    __global const float *above = u + (size_t)reflect(y - 1, height) * stride + SIDE, *here = u + row,
+                         *below = u + (size_t)reflect(y + 1, height) * stride + SIDE;
+    __global float *out = (noise->sigma > DENOISED ? guide : silent_guide) + row;
     for (int x = 0; x < width; x += 8) {
-        float8 least = INFINITY;
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++)
-                least = min(least, READ_CELLS(u + (size_t)reflect(y + j, height) * stride + SIDE + x + i));
-        CELLS(nearer + (size_t)y * stride + SIDE + x) = least;
-    }
-}
+        float8 position = INFINITY;
+        UNROLL
+        for (int i = -1; i <= 1; i++)
+            position = min(min(position, READ_CELLS(above + x + i)),
+                           min(READ_CELLS(here + x + i), READ_CELLS(below + x + i)));
+        CELLS(nearer + row + x) = position;
 
-/* guide[colour]: A before the bilateral filter. Work-items (1, low height). */
-__kernel void blend_planes(__global const float *small, __global const float *u, __global const Noise *noise,
-                           __global float *guide, int width, int stride, int planes)
-{
-    const size_t row = get_global_id(1) * stride + SIDE, picture = get_global_size(1) * stride;
-    const float s = 0.6f + 0.3f * noise->t, steepness = -1.0f / (2.0f * s * s);
-    for (int x = 0; x < width; x += 8) {
-        const float8 position = READ_CELLS(u + row + x);
         float8 weights = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f;
         for (int z = 0; z < planes; z++) {
             const float8 distance = z - position;
+            if (!any_of(fabs(distance) < reach))
+                continue;
             const float8 weight = quick_exp(steepness * distance * distance);
-            __global const float *cells = small + 3 * z * picture + row + x;
+            __global const short *cells = small + 3 * z * picture + row + x;
             weights += weight;
-            red += weight * READ_CELLS(cells);
-            green += weight * READ_CELLS(cells + picture);
-            blue += weight * READ_CELLS(cells + 2 * picture);
+            red += weight * READ_SHORT_CELLS(cells);
+            green += weight * READ_SHORT_CELLS(cells + picture);
+            blue += weight * READ_SHORT_CELLS(cells + 2 * picture);
         }
-        CELLS(guide + row + x) = red / weights;
-        CELLS(guide + picture + row + x) = green / weights;
-        CELLS(guide + 2 * picture + row + x) = blue / weights;
+        const float8 unit = 1.0f / (COLOUR_ONE * weights);
+        CELLS(out + x) = red * unit;
+        CELLS(out + picture + x) = green * unit;
+        CELLS(out + 2 * picture + x) = blue * unit;
     }
+    mirror_ends(nearer + row, width);
+    for (int colour = 0; colour < 3; colour++)
+        mirror_ends(out + colour * picture, width);
 }
 
-/* Bilateral filter of radius 4: weights exp(-d^2 / (2 2^2) - e^2 / (2 range^2)), e = |dA|_1; a copy where there is
- * hardly any noise. The sides of the guide must be mirrored. Work-items (1, low height). */
+/* Bilateral filter of radius 4: weights exp(-d^2 / (2 2^2) - e^2 / (2 range^2)), e = |dA|_1. The sides are
+ * mirrored, before and after. Work-items (1, low height). */
 __kernel void denoise(__global const float *guide, __global const Noise *noise, __global float *denoised, int width,
-                      int stride)
+                      int stride, int scale)
 {
+    if (noise->sigma <= DENOISED)
+        return;
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t picture = (size_t)height * stride, row = (size_t)y * stride + SIDE;
-    const float range = 4.0f * noise->sigma / SCALE, steepness = -1.0f / (2.0f * range * range);
-    const int radius = noise->sigma > 0.3f ? 4 : 0;
+    const float range = 4.0f * noise->sigma / scale, steepness = -1.0f / (2.0f * range * range);
+    const int radius = 4;
     for (int x = 0; x < width; x += 8) {
         const float8 red = READ_CELLS(guide + row + x), green = READ_CELLS(guide + picture + row + x),
                      blue = READ_CELLS(guide + 2 * picture + row + x);
         float8 weights = 1.0f, red_sum = red, green_sum = green, blue_sum = blue;
+        UNROLL
         for (int j = -radius; j <= radius; j++)
             for (int i = -radius; i <= radius; i++) {
                 if (i * i + j * j > radius * radius || (i == 0 && j == 0))
@@ -131,4 +141,6 @@ __kernel void denoise(__global const float *guide, __global const Noise *noise, 
         CELLS(denoised + picture + row + x) = green_sum / weights;
         CELLS(denoised + 2 * picture + row + x) = blue_sum / weights;
     }
+    for (int colour = 0; colour < 3; colour++)
+        mirror_ends(denoised + colour * picture + row, width);
 }

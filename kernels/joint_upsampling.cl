@@ -41,10 +41,11 @@ typedef struct {
 } Stack;
 
 /* Adds the pixels of a part, weighted, to three colours, which colours_of() makes R, G, B. */
-inline void add_pixels(const Stack *stack, int z, int left, int top, float weight, float *red, float *green,
+INLINE void add_pixels(const Stack *stack, int z, int left, int top, float weight, float *red, float *green,
                        float *blue)
 {
     const ulong2 rows = stack->table[z];
+    UNROLL
     for (int j = 0; j < EDGE; j++) {
         const int y = clamp(top + j, 0, stack->height - 1);
         __global const uchar *row = stack->stack + rows.x + rows.y * (ulong)y;
@@ -53,6 +54,7 @@ inline void add_pixels(const Stack *stack, int z, int left, int top, float weigh
         __global const uchar *u_row = stack->stack + u_rows.x + u_rows.y * (ulong)(y / 2);
         __global const uchar *v_row = stack->stack + v_rows.x + v_rows.y * (ulong)(y / 2);
 #endif
+        UNROLL
         for (int i = 0; i < EDGE; i++) {
             const int x = clamp(left + i, 0, stack->width - 1), lane = j * EDGE + i;
 #if defined(INTERLEAVED)
@@ -72,7 +74,7 @@ inline void add_pixels(const Stack *stack, int z, int left, int top, float weigh
 }
 
 /* As colours_of_yuv of small_planes.cl. */
-inline void colours_of(lanes *red, lanes *green, lanes *blue)
+INLINE void colours_of(lanes *red, lanes *green, lanes *blue)
 {
 #if defined(CHROMA)
     const lanes y = *red, u = *green - 128.0f, v = *blue - 128.0f;
@@ -85,7 +87,7 @@ inline void colours_of(lanes *red, lanes *green, lanes *blue)
 }
 
 /* Depth pixels of positions u: see depth_code.cl. */
-inline void write_depth(__global ushort *depth, const float *u, __global const ushort *codes, int is_linear, int left,
+INLINE void write_depth(__global ushort *depth, const float *u, __global const ushort *codes, int is_linear, int left,
                         int top, int planes, int width, int height)
 {
     const lanes share = clamp(LOAD_LANES(u) * (1.0f / (planes - 1)), 0.0f, 1.0f);
@@ -105,7 +107,7 @@ typedef struct {
     lanes nearness[PARTS][16];
 } Places;
 
-inline void find_places(Places *places)
+INLINE void find_places(Places *places)
 {
     for (int part = 0; part < PARTS; part++) {
         float across[LANES], down[LANES], nearness[LANES];
@@ -115,6 +117,7 @@ inline void find_places(Places *places)
         }
         places->across[part] = LOAD_LANES(across);
         places->down[part] = LOAD_LANES(down);
+        UNROLL
         for (int k = 0; k < 16; k++) {
             for (int lane = 0; lane < LANES; lane++) {
                 const float dx = across[lane] - (k % 4 - 1.0f), dy = down[lane] - (k / 4 - 1.0f);
@@ -125,7 +128,7 @@ inline void find_places(Places *places)
     }
 }
 
-inline float spread(const float *cells)
+INLINE float spread(const float *cells)
 {
     const float16 all = vload16(0, cells);
     const float8 low8 = min(all.lo, all.hi), high8 = max(all.lo, all.hi);
@@ -135,7 +138,7 @@ inline float spread(const float *cells)
 }
 
 /* G of a part: the planes blended at the position `u`. */
-inline void blend_part(const Stack *stack, float u, float t, int left, int top, lanes *red, lanes *green, lanes *blue)
+INLINE void blend_part(const Stack *stack, float u, float t, int left, int top, lanes *red, lanes *green, lanes *blue)
 {
     const float s = 0.6f + 0.3f * t, reach = 2.5f * s;
     float sums[3][LANES], weights = 0.0f;
@@ -191,6 +194,7 @@ __kernel void upsample_depth(__global const float *u, __global const float *near
                 lanes red, green, blue, weights = 0.0f;
                 blend_part(&stack, blend_at, noise->t, left, top, &red, &green, &blue);
                 result = 0.0f;
+                UNROLL
                 for (int k = 0; k < 16; k++) {
                     __global const float *colour = guide + rows[k / 4] + low_x - 1 + k % 4;
                     const lanes difference = fabs(red - colour[0]) + fabs(green - colour[picture]) +

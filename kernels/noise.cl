@@ -29,11 +29,13 @@ inline float median_bin(__global const uint *histogram, uint count)
     return bin + (0.5f * count - below) / max(histogram[bin], 1u);
 }
 
-/* Work-items (1, planes); every step-th pixel in both directions. histograms[planes][BINS]. */
-__kernel void plane_noise(__global const uchar *stack, __global const ulong2 *rows, int4 channels,
+/* Planes whose bit of `wanted` is not set keep their sigma. Work-items (1, planes); every step-th pixel in both directions. histograms[planes][BINS]. */
+__kernel void plane_noise(__global const uchar *stack, __global const ulong2 *rows, int4 channels, ulong wanted,
                           __global uint *histograms, __global float *sigmas, int width, int height, int step)
 {
     const int z = (int)get_global_id(1);
+    if (!(wanted >> z & 1))
+        return;
     __global uint *histogram = histograms + z * BINS;
     for (int bin = 0; bin < BINS; bin++)
         histogram[bin] = 0;
@@ -53,8 +55,9 @@ __kernel void plane_noise(__global const uchar *stack, __global const ulong2 *ro
     sigmas[z] = 1.4826f / 6.0f / BINS_A_DN * median_bin(histogram, count);
 }
 
-/* One work-item. The pre-blur is a Gaussian of t (scale + 2) / 5 pixels, none below a quarter. */
-__kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale)
+/* One work-item. The pre-blur is a Gaussian of t (scale + 2) / 5 pixels, none below a quarter. With `is_rolling` the one
+ * before is kept where no tap differs by more than 1, since the planes that have not changed were blurred by it. */
+__kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale, int is_rolling)
 {
     float sigma = sigmas[0];
     for (int z = 1; z < planes; z++)
@@ -69,10 +72,15 @@ __kernel void judge_noise(__global const float *sigmas, __global Noise *noise, i
         weights[i] = blur > 0.25f ? exp(-i * i / (2.0f * blur * blur)) : i == 0;
         sum += 2.0f * weights[i];
     }
-    int rest = 64;
+    int taps[4], is_near = is_rolling;
+    taps[0] = 64;
     for (int i = 3; i > 0; i--) {
-        noise->taps[i] = convert_int_rte(64.0f * weights[i] / sum);
-        rest -= 2 * noise->taps[i];
+        taps[i] = convert_int_rte(64.0f * weights[i] / sum);
+        taps[0] -= 2 * taps[i];
     }
-    noise->taps[0] = rest;
+    for (int i = 0; i < 4; i++)
+        is_near = is_near && abs(taps[i] - noise->taps[i]) <= (i == 0 ? 2 : 1);
+    noise->is_new = !is_near;
+    for (int i = 0; i < 4; i++)
+        noise->taps[i] = is_near ? noise->taps[i] : taps[i];
 }

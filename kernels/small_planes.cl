@@ -1,128 +1,161 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The planes of a stack area-downsampled to 1/SCALE, in R, G, B of DN: low pictures small[z][colour].
+ * The planes of a stack area-downsampled to 1/SCALE, in R, G, B: low pictures short small[z][colour].
+ *
+ * YUV becomes RGB by BT.601 in 1/32, full range: the colours only have to part surfaces.
  */
 #include "low_picture.cl"
 
 typedef uchar16 uchar16_anywhere __attribute__((aligned(1)));
-typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 
-#define store16(v, pointer) *(__global float16_anywhere *)(pointer) = v
-typedef float16 float16_anywhere __attribute__((aligned(4)));
-
-/* Sums of BOX rows for 16 * count samples. */
-inline void sum_rows(__global const uchar *top, ulong stride, ushort16 *sums, int count)
-{
-    for (int i = 0; i < count; i++) {
-        sums[i] = 0;
-        for (int j = 0; j < BOX; j++)
-            sums[i] += convert_ushort16(*(__global const uchar16_anywhere *)(top + stride * (ulong)j + 16 * i));
-    }
-}
-
-inline ushort16 add_pairs(ushort16 a, ushort16 b)
+INLINE ushort16 add_pairs(ushort16 a, ushort16 b)
 {
     return (ushort16)(a.even + a.odd, b.even + b.odd);
 }
 
-/* Sums of each BOX of 16 * BOX neighbours. */
-inline ushort16 sum_along(ushort16 *sums)
+/* Sums of each `box` of 16 * box neighbours. */
+INLINE ushort16 sum_along(ushort16 *sums, const int box)
 {
-    for (int count = BOX; count > 1; count /= 2)
+    UNROLL
+    for (int count = box; count > 1; count /= 2)
+        UNROLL
         for (int i = 0; i < count / 2; i++)
             sums[i] = add_pairs(sums[2 * i], sums[2 * i + 1]);
     return sums[0];
 }
 
-inline ushort16 sum_block(__global const uchar *top, ulong stride)
+/* Sums over `box` rows of 16 samples. */
+INLINE ushort16 sum_rows(__global const uchar *top, ulong stride, const int box)
 {
-    ushort16 sums[BOX];
-    sum_rows(top, stride, sums, BOX);
-    return sum_along(sums);
+    ushort16 sum = 0;
+    UNROLL
+    for (int j = 0; j < box; j++)
+        sum += convert_ushort16(*(__global const uchar16_anywhere *)(top + stride * (ulong)j));
+    return sum;
 }
 
-/* Averages squares of BOX samples of a component with CHANNELS interleaved channels, `bytes` each pixel of it.
- * `places` says which colour a channel is, -1 none. Work-items (1, low height, planes). */
-__kernel void average_squares(__global const uchar *stack, __global const ulong2 *table, int first_row,
-                              __global float *small, int width, int low_width, int stride, int4 places)
+/* 16 averages of squares of `box` samples, times `one`. */
+INLINE short16 average(__global const uchar *top, ulong stride, const int box, const int one)
+{
+    ushort16 sums[8];
+    UNROLL
+    for (int i = 0; i < box; i++)
+        sums[i] = sum_rows(top + 16 * i, stride, box);
+    const ushort16 sum = sum_along(sums, box);
+    return as_short16(one >= box * box ? sum * (ushort)(one / (box * box)) : sum / (ushort)(box * box / one));
+}
+
+/* The same of two interleaved components. */
+INLINE void average_both(__global const uchar *top, ulong stride, const int box, const int one, short16 *first,
+                         short16 *second)
+{
+    ushort16 firsts[8], seconds[8];
+    UNROLL
+    for (int i = 0; i < box; i++) {
+        const ushort16 left = sum_rows(top + 32 * i, stride, box), right = sum_rows(top + 32 * i + 16, stride, box);
+        firsts[i] = (ushort16)(left.even, right.even);
+        seconds[i] = (ushort16)(left.odd, right.odd);
+    }
+    const ushort factor = (ushort)max(one / (box * box), 1), divisor = (ushort)max(box * box / one, 1);
+    *first = as_short16(sum_along(firsts, box) * factor / divisor);
+    *second = as_short16(sum_along(seconds, box) * factor / divisor);
+}
+
+/* The average of a square of any samples, `step` bytes apart. */
+INLINE short average_any(__global const uchar *top, ulong stride, int step, const int box, int one)
+{
+    uint sum = 0;
+    UNROLL
+    for (int j = 0; j < box; j++)
+        for (int k = 0; k < box; k++)
+#if LUMA_BYTES == 2
+            sum += top[stride * (ulong)j + k * step] | (uint)top[stride * (ulong)j + k * step + 1] << 8;
+    return (short)(sum / (uint)(box * box) * (uint)one * 255 / 65535);
+#else
+            sum += top[stride * (ulong)j + k * step];
+    return (short)(sum * one / (uint)(box * box));
+#endif
+}
+
+#define CHROMA_ONE 4
+
+#if defined(CHROMA)
+/* y in 1/COLOUR_ONE, u and v in 1/CHROMA_ONE; products fit 16 bits. */
+#define STORE_YUV(y, u, v, SHORT, STORE)                                                                               \
+    {                                                                                                                  \
+        const SHORT blue = (u) - (SHORT)(128 * CHROMA_ONE), red = (v) - (SHORT)(128 * CHROMA_ONE);                     \
+        STORE(out) = (y) + ((red * (SHORT)45) >> (SHORT)3);                                                              \
+        STORE(out + colour) = (y) - ((blue * (SHORT)11 + red * (SHORT)23) >> (SHORT)3);                                  \
+        STORE(out + 2 * colour) = (y) + ((blue * (SHORT)57) >> (SHORT)3);                                                \
+    }
+#define ONE_SHORT(pointer) *(pointer)
+#endif
+
+/* `channels`: of interleaved colours bytes a pixel and index of R, G, B; of NV12 and I420 step and index of U, of V.
+ * Planes whose bit of `wanted` is not set stay as they are. Work-items (1, low height, planes). */
+__kernel void average_colours(__global const uchar *stack, __global const ulong2 *rows, int4 channels, ulong wanted,
+                              __global short *small, int low_width, int stride)
 {
     const int low_y = (int)get_global_id(1), z = (int)get_global_id(2), low_height = (int)get_global_size(1);
-    const ulong2 rows = table[first_row + z];
-    __global const uchar *top = stack + rows.x + rows.y * (ulong)(low_y * BOX);
-    __global float *out = small + ((size_t)(3 * z) * low_height + low_y) * stride + SIDE;
+    if (!(wanted >> z & 1))
+        return;
     const size_t colour = (size_t)low_height * stride;
-    const int place[4] = {places.s0, places.s1, places.s2, places.s3};
+    __global short *row = small + ((size_t)(3 * z) * low_height + low_y) * stride + SIDE;
+    __global const uchar *top = stack + rows[z].x + rows[z].y * (ulong)(low_y * SCALE);
+    const ulong step = rows[z].y;
 
-#if SAMPLE_BYTES == 1
-    int done = 0;
-#if CHANNELS == 1
-    for (; done + 16 <= low_width; done += 16)
-        store16(convert_float16(sum_block(top + done * BOX, rows.y)) * (1.0f / (BOX * BOX)),
-                out + place[0] * colour + done);
-#elif CHANNELS == 2
-    for (; done + 16 <= low_width; done += 16) {
-        ushort16 sums[2 * BOX], first[BOX], second[BOX];
-        sum_rows(top + 2 * done * BOX, rows.y, sums, 2 * BOX);
-        for (int i = 0; i < BOX; i++) {
-            first[i] = (ushort16)(sums[2 * i].even, sums[2 * i + 1].even);
-            second[i] = (ushort16)(sums[2 * i].odd, sums[2 * i + 1].odd);
+#if defined(CHROMA)
+    const int planes = (int)get_global_size(2);
+    const ulong2 u_rows = rows[planes + z], v_rows = rows[V_COMPONENT * planes + z];
+    const ulong chroma_y = low_y * (SCALE / 2);
+    __global const uchar *u_top = stack + u_rows.x + u_rows.y * chroma_y, *v_top = stack + v_rows.x + v_rows.y * chroma_y;
+    for (int done = 0; done + 16 <= low_width || done < low_width; done += 16) {
+        if (low_width < 16) {
+            for (int x = 0; x < low_width; x++) {
+                __global short *out = row + x;
+                const int chroma_x = x * (SCALE / 2);
+                const short y = average_any(top + x * SCALE, step, 1, SCALE, COLOUR_ONE);
+                const short u = average_any(u_top + chroma_x * channels.s0 + channels.s1, u_rows.y, channels.s0, SCALE / 2,
+                                            CHROMA_ONE);
+                const short v = average_any(v_top + chroma_x * channels.s2 + channels.s3, v_rows.y, channels.s2, SCALE / 2,
+                                            CHROMA_ONE);
+                STORE_YUV(y, u, v, short, ONE_SHORT)
+            }
+            return;
         }
-        store16(convert_float16(sum_along(first)) * (1.0f / (BOX * BOX)), out + place[0] * colour + done);
-        store16(convert_float16(sum_along(second)) * (1.0f / (BOX * BOX)), out + place[1] * colour + done);
-    }
+        const int x = min(done, low_width - 16);
+        __global short *out = row + x;
+        const short16 y = average(top + x * SCALE, step, SCALE, COLOUR_ONE);
+        short16 u, v;
+#if V_COMPONENT == 2
+        u = average(u_top + x * (SCALE / 2), u_rows.y, SCALE / 2, CHROMA_ONE);
+        v = average(v_top + x * (SCALE / 2), v_rows.y, SCALE / 2, CHROMA_ONE);
+#else
+        average_both(u_top + x * SCALE, u_rows.y, SCALE / 2, CHROMA_ONE, &u, &v);
 #endif
+        STORE_YUV(y, u, v, short16, SHORTS)
+    }
+#elif defined(INTERLEAVED)
+    /* 16 pixels at a time, the last ones overlapping those before. */
+    const int place[3] = {channels.s1, channels.s2, channels.s3};
     ushort sums[16 * CHANNELS];
-    for (int x = done; x < low_width; x += 16 / BOX) {
-        const int from = min(x * BOX, width - 16), skipped = x * BOX - from;
-        for (int part = 0; part < CHANNELS; part++) {
-            ushort16 sum = 0;
-            for (int j = 0; j < BOX; j++)
-                sum += convert_ushort16(
-                    *(__global const uchar16_anywhere *)(top + rows.y * (ulong)j + from * CHANNELS + 16 * part));
-            vstore16(sum, part, sums);
-        }
-        for (int channel = 0; channel < CHANNELS; channel++)
-            for (int i = 0; i < 16 / BOX && place[channel] >= 0; i++) {
+    for (int x = 0; x < low_width; x += 16 / SCALE) {
+        const int from = min(x, low_width - 16 / SCALE);
+        for (int part = 0; part < CHANNELS; part++)
+            vstore16(sum_rows(top + from * SCALE * CHANNELS + 16 * part, step, SCALE), part, sums);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < 16 / SCALE; i++) {
                 uint sum = 0;
-                for (int k = 0; k < BOX; k++)
-                    sum += sums[min(i * BOX + k + skipped, 15) * CHANNELS + channel];
-                out[place[channel] * colour + x + i] = sum * (1.0f / (BOX * BOX));
+                for (int k = 0; k < SCALE; k++)
+                    sum += sums[(i * SCALE + k) * CHANNELS + place[c]];
+                row[c * colour + from + i] = (short)(sum * COLOUR_ONE / (SCALE * SCALE));
             }
     }
 #else
     for (int x = 0; x < low_width; x++) {
-        uint sum = 0;
-        for (int j = 0; j < BOX; j++)
-            for (int k = 0; k < BOX; k++) {
-                __global const uchar *sample = top + rows.y * (ulong)j + 2 * (x * BOX + k);
-                sum += sample[0] | (uint)sample[1] << 8;
-            }
-        out[place[0] * colour + x] = sum * (255.0f / 65535.0f / (BOX * BOX));
+        const short y = average_any(top + x * SCALE * LUMA_BYTES, step, LUMA_BYTES, SCALE, COLOUR_ONE);
+        row[x] = row[colour + x] = row[2 * colour + x] = y;
     }
 #endif
-}
-
-/* Y, U, V in the places of R, G, B -> R, G, B (BT.601, full range: the colours only have to part surfaces).
- * Work-items (1, low height, planes). */
-__kernel void colours_of_yuv(__global float *small, int low_width, int stride)
-{
-    const size_t colour = get_global_size(1) * stride;
-    __global float *row = small + get_global_id(2) * 3 * colour + get_global_id(1) * stride + SIDE;
-    for (int x = 0; x < low_width; x += 8) {
-        const float8 y = READ_CELLS(row + x);
-        const float8 u = READ_CELLS(row + colour + x) - 128.0f, v = READ_CELLS(row + 2 * colour + x) - 128.0f;
-        CELLS(row + x) = y + 1.402f * v;
-        CELLS(row + colour + x) = y - 0.344f * u - 0.714f * v;
-        CELLS(row + 2 * colour + x) = y + 1.772f * u;
-    }
-}
-
-/* Y in the place of R -> R = G = B = Y. Work-items (1, low height, planes). */
-__kernel void colours_of_gray(__global float *small, int low_width, int stride)
-{
-    const size_t colour = get_global_size(1) * stride;
-    __global float *row = small + get_global_id(2) * 3 * colour + get_global_id(1) * stride + SIDE;
-    for (int x = 0; x < low_width; x += 8)
-        CELLS(row + colour + x) = CELLS(row + 2 * colour + x) = READ_CELLS(row + x);
 }

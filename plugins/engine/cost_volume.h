@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/focus_volume.h"
-#include "engine/low_filter.h"
 #include "engine/small_planes.h"
 
 namespace dff {
@@ -11,29 +10,28 @@ namespace dff {
 /* What it costs a cell to lie in a plane: see kernels/cost_volume.cl. */
 class CostVolume {
 public:
-    CostVolume(CommandQueue &queue, const LowShape &low, const NoiseEstimate &noise);
+    CostVolume(CommandQueue &queue, const LowShape &low);
 
-    /* Smooths the fine focus volume along z in place. */
     void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise);
 
-    const cl::Buffer &fine() const { return fine_; } /* low pictures [z]: C0 */
-    const cl::Buffer &cost() const { return cost_; } /* low pictures [z]: C */
+    /* Low pictures short, their sides mirrored. */
+    const cl::Buffer &cost() const { return cost_; }         /* [z]: C */
+    const cl::Buffer &first_guess() const { return guess_; } /* u0 */
 
     /* float: the largest S0 of any cell, DN. */
-    const cl::Buffer &evidence() const { return evidence_; }
+    const cl::Buffer &evidence() const { return largest_range_; }
 
-private:
+    /* The two halves of run(). C is C0 in between. */
     void run_fine(const FocusVolume &focus, const NoiseEstimate &noise);
     void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise);
-    void quantile(const cl::Buffer &picture, const cl::Buffer &result, cl_float share);
 
+private:
     CommandQueue &queue_;
     LowShape low_;
-    LowFilter blur_, box_;
-    cl::Kernel evidence_kernel_, quantile_, largest_, fine_cost_, coarse_focus_, add_coarse_cost_;
-    cl::Buffer top_, range_, coarse_top_, coarse_range_, median_top_, median_range_, median_coarse_range_,
-        evidence_;
-    cl::Buffer fine_, cost_, blurred_, between_, coarse_;
+    cl::Kernel find_evidence_, summarise_, fine_cost_, coarse_focus_, add_coarse_cost_;
+    cl::Buffer top_, range_, coarse_top_, coarse_range_, medians_, coarse_medians_, largest_range_,
+        largest_coarse_range_;
+    cl::Buffer cost_, guess_, coarse_, scratch_, coarse_scratch_;
 };
 
 } // namespace dff

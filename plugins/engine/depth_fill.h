@@ -12,20 +12,17 @@ class DepthFill {
 public:
     DepthFill(CommandQueue &queue, const LowShape &low);
 
-    /* Changes matching.u() in place. */
-    void run(SemiGlobalMatching &matching);
+    /* Changes matching.u() in place and mirrors its sides. */
+    void run(const SemiGlobalMatching &matching);
 
     /* float: the 90th percentile of the confidence. */
     const cl::Buffer &high_confidence() const { return high_confidence_; }
 
 private:
-    void smooth(const cl::Buffer &pair, const LowShape &low, const cl::Buffer &edges, cl_int direction,
-                cl_float lambda);
-
     CommandQueue &queue_;
-    LowShape low_, transposed_;
-    cl::Kernel weigh_, smooth_columns_, fill_, quantile_;
-    cl::Buffer pair_, pair_transposed_, edges_transposed_, scratch_, high_confidence_;
+    LowShape low_;
+    cl::Kernel weigh_, smooth_columns_, smooth_rows_, fill_, quantile_;
+    cl::Buffer pair_, scratch_, high_confidence_;
 };
 
 } // namespace dff

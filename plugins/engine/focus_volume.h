@@ -12,16 +12,17 @@ class FocusVolume {
 public:
     FocusVolume(CommandQueue &queue, const StackShape &shape, const LowShape &low);
 
+    /* Computes the planes that have changed, all if the noise has. */
     void run(const StackBuffer &stack, const NoiseEstimate &noise);
 
-    const cl::Buffer &volume() const { return volume_; } /* low pictures [z], DN */
+    const cl::Buffer &volume() const { return volume_; } /* low pictures short [z] */
 
 private:
     CommandQueue &queue_;
     StackShape shape_;
     LowShape low_;
-    cl::Kernel thirds_, blur_columns_, blur_rows_, focus_columns_, focus_columns_blurred_, focus_rows_;
-    cl::Buffer samples_, sample_rows_, half_blurred_, blurred_, columns_, volume_;
+    cl::Kernel silent_, prepared_;
+    cl::Buffer scratch_, volume_;
 };
 
 } // namespace dff

@@ -5,14 +5,11 @@
 namespace dff {
 
 GuideImage::GuideImage(CommandQueue &queue, const LowShape &low)
-    : queue_(queue), low_(low), box_(queue, low, LowFilter::box(2)), boxed_(low.allocate(queue, low.planes)),
-      between_(low.allocate(queue, low.planes)), u_(low.allocate(queue, 1)), median_(low.allocate(queue, 1)),
-      nearer_(low.allocate(queue, 1)), blended_(low.allocate(queue, 3)), guide_(low.allocate(queue, 3))
+    : queue_(queue), low_(low), median_(low.allocate(queue, 1)), nearer_(low.allocate(queue, 1)),
+      blended_(low.allocate(queue, 3)), guide_(low.allocate(queue, 3))
 {
-    const Program program(queue.device(), "guide_image", "-DSCALE=" + std::to_string(low.scale));
-    cheapest_plane_ = program.kernel("cheapest_plane");
+    const Program program(queue.device(), "guide_image");
     median_5x5_ = program.kernel("median_5x5");
-    nearest_3x3_ = program.kernel("nearest_3x3");
     blend_planes_ = program.kernel("blend_planes");
     denoise_ = program.kernel("denoise");
 }
@@ -20,28 +17,22 @@ GuideImage::GuideImage(CommandQueue &queue, const LowShape &low)
 void GuideImage::run(const CostVolume &cost, const SmallPlanes &small, const NoiseEstimate &noise)
 {
     queue_.begin_stage("guide");
-    box_.run(cost.fine(), between_, boxed_, low_.planes);
-    queue_.run(cheapest_plane_, low_.rows(), boxed_, u_, low_.width, low_.stride, low_.planes);
-    box_.mirror_sides(u_, 1);
-    queue_.run(median_5x5_, low_.rows(), u_, median_, low_.width, low_.stride);
-    box_.mirror_sides(median_, 1);
-    queue_.run(nearest_3x3_, low_.rows(), median_, nearer_, low_.width, low_.stride);
-    queue_.run(blend_planes_, low_.rows(), small.colours(), nearer_, noise.noise(), blended_, low_.width,
-               low_.stride, low_.planes);
-    box_.mirror_sides(blended_, 3);
-    queue_.run(denoise_, low_.rows(), blended_, noise.noise(), guide_, low_.width, low_.stride);
-    box_.mirror_sides(guide_, 3);
+    queue_.run(median_5x5_, low_.rows(), cost.first_guess(), median_, low_.width, low_.stride);
+    blend(median_, small, noise, blended_);
+    queue_.run(denoise_, low_.rows(), blended_, noise.noise(), guide_, low_.width, low_.stride, low_.scale);
 }
 
 void GuideImage::run_at(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise)
 {
     queue_.begin_stage("guide-again");
-    box_.mirror_sides(u, 1);
-    queue_.run(nearest_3x3_, low_.rows(), u, nearer_, low_.width, low_.stride);
-    box_.mirror_sides(nearer_, 1);
-    queue_.run(blend_planes_, low_.rows(), small.colours(), nearer_, noise.noise(), guide_, low_.width,
-               low_.stride, low_.planes);
-    box_.mirror_sides(guide_, 3);
+    blend(u, small, noise, guide_);
+}
+
+void GuideImage::blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise,
+                       const cl::Buffer &guide)
+{
+    queue_.run(blend_planes_, low_.rows(), small.colours(), u, noise.noise(), nearer_, guide, guide_,
+               low_.width, low_.stride, low_.planes);
 }
 
 } // namespace dff

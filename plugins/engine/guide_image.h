@@ -11,21 +11,24 @@ class GuideImage {
 public:
     GuideImage(CommandQueue &queue, const LowShape &low);
 
-    /* At a first guess, denoised; its sides are mirrored. */
+    /* At a first guess, denoised. */
     void run(const CostVolume &cost, const SmallPlanes &small, const NoiseEstimate &noise);
 
-    /* At the depth `u`, not denoised; the sides of all three are mirrored. */
+    /* At the depth `u`, whose sides are mirrored; not denoised. */
     void run_at(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise);
 
+    /* Their sides are mirrored. */
     const cl::Buffer &guide() const { return guide_; }   /* low pictures [R, G, B] */
     const cl::Buffer &nearer() const { return nearer_; } /* the least u around each cell */
 
 private:
+    void blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise,
+               const cl::Buffer &guide);
+
     CommandQueue &queue_;
     LowShape low_;
-    LowFilter box_;
-    cl::Kernel cheapest_plane_, median_5x5_, nearest_3x3_, blend_planes_, denoise_;
-    cl::Buffer boxed_, between_, u_, median_, nearer_, blended_, guide_;
+    cl::Kernel median_5x5_, blend_planes_, denoise_;
+    cl::Buffer median_, nearer_, blended_, guide_;
 };
 
 } // namespace dff

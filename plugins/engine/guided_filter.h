@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/low_filter.h"
+#include "engine/low_shape.h"
 #include "engine/noise_estimate.h"
 
 namespace dff {
@@ -12,17 +12,16 @@ class GuidedFilter {
 public:
     GuidedFilter(CommandQueue &queue, const LowShape &low);
 
-    /* The sides of the guide must be mirrored; those of `cost` are by this. */
+    /* The sides of cost and guide must be mirrored. */
     void run(const cl::Buffer &cost, const cl::Buffer &guide, const NoiseEstimate &noise);
 
-    const cl::Buffer &filtered() const { return filtered_; } /* low pictures [z] */
+    const cl::Buffer &filtered() const { return filtered_; } /* low pictures short [z] */
 
 private:
     CommandQueue &queue_;
     LowShape low_;
-    LowFilter sides_;
-    cl::Kernel guide_system_, fit_, apply_;
-    cl::Buffer system_, coefficients_, scratch_, filtered_;
+    cl::Kernel guide_system_, filter_costs_;
+    cl::Buffer system_, scratch_, filtered_;
 };
 
 } // namespace dff

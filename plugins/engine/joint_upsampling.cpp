@@ -4,36 +4,12 @@
 
 namespace dff {
 
-namespace {
-
-std::string build_options(PixelFormat format, cl_int scale)
-{
-    std::string options = "-DSCALE=" + std::to_string(scale) + " " + Luma::build_options(format);
-    if (is_interleaved(format))
-        return options + " -DINTERLEAVED";
-    if (format == PixelFormat::I420)
-        return options + " -DCHROMA -DV_COMPONENT=2";
-    if (format == PixelFormat::Nv12)
-        return options + " -DCHROMA -DV_COMPONENT=1";
-    return options;
-}
-
-cl_int4 channels_of(PixelFormat format)
-{
-    if (format == PixelFormat::I420)
-        return {{1, 0, 1, 0}};
-    if (format == PixelFormat::Nv12)
-        return {{2, 0, 2, 1}};
-    return colour_channels(format);
-}
-
-} // namespace
-
 JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low)
-    : queue_(queue), shape_(shape), low_(low), channels_(channels_of(shape.format)),
+    : queue_(queue), shape_(shape), low_(low), channels_(colour_channels(shape.format)),
       depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
 {
-    const Program program(queue.device(), "joint_upsampling", build_options(shape.format, low.scale));
+    const Program program(queue.device(), "joint_upsampling",
+                          colour_options(shape.format) + " -DSCALE=" + std::to_string(low.scale));
     upsample_ = program.kernel("upsample_depth");
     upsample_confidence_ = program.kernel("upsample_confidence");
     keep_confident_ = program.kernel("keep_confident");

@@ -4,6 +4,7 @@
 
 #include "engine/engine_error.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace dff {
@@ -30,12 +31,20 @@ cl_int stride_for(cl_int width)
     return (lines | 1) * 16;
 }
 
+/* An even number of strips of about 24 rows: few enough that what overlaps at their ends costs little, and
+ * equal shares for two processors. */
+cl_int strip_for(cl_int height)
+{
+    const cl_int pairs = std::max((height + 24) / 48, 1);
+    return (height + 2 * pairs - 1) / (2 * pairs);
+}
+
 } // namespace
 
 LowShape::LowShape(const StackShape &shape, unsigned wish)
     : scale(static_cast<cl_int>(choose_scale(shape, wish))), width(static_cast<cl_int>(shape.width) / scale),
       height(static_cast<cl_int>(shape.height) / scale), stride(stride_for(width)),
-      planes(static_cast<cl_int>(shape.planes))
+      planes(static_cast<cl_int>(shape.planes)), strip(strip_for(height))
 {
 }
 
@@ -44,14 +53,25 @@ LowShape LowShape::transposed() const
     LowShape other = *this;
     std::swap(other.width, other.height);
     other.stride = stride_for(other.width);
+    other.strip = strip_for(other.height);
     return other;
 }
 
 cl::Buffer LowShape::allocate(CommandQueue &queue, size_t pictures) const
 {
-    const size_t bytes = pictures * height * stride * sizeof(cl_float);
+    return allocate_rows(queue, pictures * height, sizeof(cl_float));
+}
+
+cl::Buffer LowShape::allocate_shorts(CommandQueue &queue, size_t pictures) const
+{
+    return allocate_rows(queue, pictures * height, sizeof(cl_short));
+}
+
+cl::Buffer LowShape::allocate_rows(CommandQueue &queue, size_t rows, size_t cell_bytes) const
+{
+    const size_t bytes = rows * stride * cell_bytes;
     cl::Buffer buffer = queue.allocate(bytes);
-    queue.commands().enqueueFillBuffer(buffer, cl_float{0}, 0, bytes);
+    queue.commands().enqueueFillBuffer(buffer, cl_uint{0}, 0, bytes);
     return buffer;
 }
 

@@ -19,17 +19,26 @@ struct LowShape {
     cl_int width, height; /* cells */
     cl_int stride;        /* cells */
     cl_int planes;
+    cl_int strip; /* rows a work-item takes, where it takes more than one */
 
     /* The same with rows and columns exchanged. */
     LowShape transposed() const;
 
     /* Room for `pictures` low pictures, all 0. */
     cl::Buffer allocate(CommandQueue &queue, size_t pictures) const;
+    cl::Buffer allocate_shorts(CommandQueue &queue, size_t pictures) const;
+
+    /* Room for `rows` rows of low pictures whose cells have `cell_bytes`, all 0. */
+    cl::Buffer allocate_rows(CommandQueue &queue, size_t rows, size_t cell_bytes) const;
 
     /* Work-items: a row each, of one picture or of several. */
     cl::NDRange rows() const { return {1, static_cast<size_t>(height)}; }
     cl::NDRange rows_of(size_t pictures) const { return {1, static_cast<size_t>(height), pictures}; }
     cl::NDRange rows_of_planes() const { return rows_of(planes); }
+
+    /* Work-items: a strip each. */
+    size_t strips() const { return static_cast<size_t>((height + strip - 1) / strip); }
+    cl::NDRange strips_of(size_t pictures) const { return {1, strips(), pictures}; }
 };
 
 } // namespace dff

@@ -12,6 +12,10 @@ bool is_interleaved(PixelFormat format)
 
 cl_int4 colour_channels(PixelFormat format)
 {
+    if (format == PixelFormat::I420)
+        return {{1, 0, 1, 0}};
+    if (format == PixelFormat::Nv12)
+        return {{2, 0, 2, 1}};
     const bool blue_first = format == PixelFormat::Bgr || format == PixelFormat::Bgrx;
     const int bytes = format == PixelFormat::Rgbx || format == PixelFormat::Bgrx ? 4 : 3;
     return {{bytes, blue_first ? 2 : 0, 1, blue_first ? 0 : 2}};
@@ -20,6 +24,18 @@ cl_int4 colour_channels(PixelFormat format)
 std::string Luma::build_options(PixelFormat format)
 {
     return format == PixelFormat::Gray16 ? "-DLUMA_BYTES=2" : "-DLUMA_BYTES=1";
+}
+
+std::string colour_options(PixelFormat format)
+{
+    const std::string options = Luma::build_options(format);
+    if (is_interleaved(format))
+        return options + " -DINTERLEAVED -DCHANNELS=" + std::to_string(colour_channels(format).s[0]);
+    if (format == PixelFormat::I420)
+        return options + " -DCHROMA -DV_COMPONENT=2";
+    if (format == PixelFormat::Nv12)
+        return options + " -DCHROMA -DV_COMPONENT=1";
+    return options;
 }
 
 Luma::Luma(CommandQueue &queue, const StackShape &shape) : queue_(queue), shape_(shape)

@@ -29,8 +29,13 @@ private:
     cl::Buffer rows_;
 };
 
-/* Bytes a pixel and indices of R, G, B of an interleaved format, as the kernels take them. */
+/* How the kernels find the colours: of an interleaved format bytes a pixel and indices of R, G, B; of NV12
+ * and I420 step and index of U, step and index of V in their components. */
 cl_int4 colour_channels(PixelFormat format);
+
+/* Options for kernels that read colours: INTERLEAVED and CHANNELS, or CHROMA and V_COMPONENT, or neither.
+ * With those of Luma::build_options. */
+std::string colour_options(PixelFormat format);
 
 /* Whether the format's pixels are interleaved colours. */
 bool is_interleaved(PixelFormat format);

@@ -5,6 +5,7 @@
 #include "engine/luma.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace dff {
@@ -32,10 +33,12 @@ void NoiseEstimate::run(const StackBuffer &stack)
     const double pixels = static_cast<double>(shape_.width) * shape_.height;
     const auto step = static_cast<cl_int>(std::max(std::sqrt(pixels / looked_at), 1.0));
     queue_.begin_stage("noise");
+    const cl_ulong changed = stack.changed_planes();
     queue_.run(plane_noise_, {1, shape_.planes}, stack.bytes(), stack.layout(),
-               colour_channels(shape_.format), histograms_, sigmas_, static_cast<cl_int>(shape_.width),
-               static_cast<cl_int>(shape_.height), step);
-    queue_.run(judge_noise_, {1}, sigmas_, noise_, static_cast<cl_int>(shape_.planes), scale_);
+               colour_channels(shape_.format), changed, histograms_, sigmas_,
+               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), step);
+    queue_.run(judge_noise_, {1}, sigmas_, noise_, static_cast<cl_int>(shape_.planes), scale_,
+               cl_int{std::popcount(changed) < static_cast<int>(shape_.planes)});
 }
 
 } // namespace dff

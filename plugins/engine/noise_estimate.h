@@ -14,6 +14,7 @@ public:
     /* `scale` of the volume, which the pre-blur goes by. */
     NoiseEstimate(CommandQueue &queue, const StackShape &shape, cl_int scale);
 
+    /* Where most planes are the last stack's, the pre-blur stays while it is nearly right. */
     void run(const StackBuffer &stack);
 
     const cl::Buffer &noise() const { return noise_; } /* one Noise of low_picture.cl */
@@ -23,6 +24,7 @@ public:
         cl_float sigma; /* DN */
         cl_float t;     /* sigma^2 / (sigma^2 + 1) */
         cl_int taps[4]; /* of the pre-blur, in 1/64 */
+        cl_int is_new;  /* the pre-blur is another than the last stack's */
     };
 
 private:

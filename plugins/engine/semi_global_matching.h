@@ -12,23 +12,19 @@ class SemiGlobalMatching {
 public:
     SemiGlobalMatching(CommandQueue &queue, const LowShape &low);
 
-    /* The sides of the guide must be mirrored. */
+    /* `cost`: shorts below 1.5; the sides of the guide must be mirrored. */
     void run(const cl::Buffer &cost, const cl::Buffer &guide, const NoiseEstimate &noise);
 
     const cl::Buffer &u() const { return u_; }                   /* low picture */
     const cl::Buffer &confidence() const { return confidence_; } /* low picture: mean_z C, 0 to 1 */
 
-    /* Low pictures: E to the cell above, above left, above right, left. */
+    /* Low pictures short: E to the cell above, above left, above right, left. */
     const cl::Buffer &edges() const { return edges_; }
-
-    /* Exchanges rows and columns of low pictures. */
-    void transpose(const cl::Buffer &volume, const LowShape &from, const cl::Buffer &transposed,
-                   size_t pictures);
 
 private:
     CommandQueue &queue_;
     LowShape low_;
-    cl::Kernel find_edges_, sweep_rows_, follow_rows_, transpose_, decide_;
+    cl::Kernel find_edges_, sweep_rows_, follow_rows_, decide_;
     cl::Buffer edges_, total_down_, total_up_, total_along_, scratch_, u_, confidence_;
 };
 

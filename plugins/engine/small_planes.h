@@ -13,25 +13,16 @@ class SmallPlanes {
 public:
     SmallPlanes(CommandQueue &queue, const StackShape &shape, const LowShape &low);
 
+    /* Computes the planes that have changed. */
     void run(const StackBuffer &stack);
 
-    const cl::Buffer &colours() const { return colours_; } /* low pictures [z][R, G, B] */
+    const cl::Buffer &colours() const { return colours_; } /* low pictures short [z][R, G, B] */
 
 private:
-    struct Averaging {
-        cl::Kernel kernel;
-        cl_int first_row; /* of the table of rows */
-        cl_int width;     /* pixels of the component */
-        cl_int4 places;   /* which colour a channel is */
-    };
-
-    void average(size_t component, const Component &shape, cl_int4 places);
-
     CommandQueue &queue_;
-    StackShape shape_;
     LowShape low_;
-    std::vector<Averaging> averagings_;
-    cl::Kernel convert_;
+    cl_int4 channels_;
+    cl::Kernel average_colours_;
     cl::Buffer colours_;
 };
 

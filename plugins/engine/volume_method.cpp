@@ -7,7 +7,7 @@ namespace dff {
 VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters)
     : queue_(queue), shape_(shape), parameters_(parameters), low_(shape, parameters.scale),
       noise_(queue, shape, low_.scale), small_(queue, shape, low_), focus_(queue, shape, low_),
-      cost_(queue, low_, noise_), guide_(queue, low_), filter_(queue, low_), matching_(queue, low_),
+      cost_(queue, low_), guide_(queue, low_), filter_(queue, low_), matching_(queue, low_),
       fill_(queue, low_), upsampling_(queue, shape, low_)
 {
 }

@@ -220,22 +220,26 @@ Volume nearest_3x3(const Volume &u)
     });
 }
 
-Volume nearer_first_guess(const Volume &fine_cost)
+Volume first_guess(const Volume &fine_cost)
 {
     const Volume boxed = box(fine_cost, 2);
-    const Volume u = make(boxed.width, boxed.height, 1, [&](int x, int y, unsigned) {
+    return make(boxed.width, boxed.height, 1, [&](int x, int y, unsigned) {
         unsigned best = 0;
         for (unsigned z = 1; z < boxed.planes; z++)
             if (boxed.at(x, y, z) < boxed.at(x, y, best))
                 best = z;
         return static_cast<float>(best);
     });
-    return nearest_3x3(like(u, [&](int x, int y, unsigned) {
+}
+
+Volume median_5x5(const Volume &u)
+{
+    return like(u, [&](int x, int y, unsigned) {
         std::vector<float> around;
         for (int k = 0; k < 25; k++)
             around.push_back(at(u, x + k % 5 - 2, y + k / 5 - 2));
         return median(around);
-    }));
+    });
 }
 
 Colours blend(const Colours &small, const Volume &u, float t)

@@ -27,7 +27,8 @@ float median(std::vector<float> values);
 Volume range_of(const Volume &focus);
 Volume top_of(const Volume &focus);
 
-Volume nearer_first_guess(const Volume &fine_cost);
+Volume first_guess(const Volume &fine_cost);
+Volume median_5x5(const Volume &u);
 Volume nearest_3x3(const Volume &u);
 Colours blend(const Colours &small, const Volume &u, float t);
 Colours denoise(const Colours &guide, float sigma, unsigned scale);
