@@ -68,47 +68,93 @@ inline int first_cell(void)
     return ((int)get_group_id(0) + 1) * ROW;
 }
 
-/* Counts of a cell in one number: pixels, known pixels, sum of their planes. */
-#define KNOWN_SHIFT 20
-#define PLANES_SHIFT 40
+/* The part of the picture under a column of the grid. */
+typedef struct {
+    int left, right, top, bottom;
+} Area;
+
+#define LANE_16 ((short16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+
+inline uchar lowest(uchar16 v)
+{
+    const uchar8 a = min(v.lo, v.hi);
+    const uchar4 b = min(a.lo, a.hi);
+    const uchar2 c = min(b.lo, b.hi);
+    return min(c.lo, c.hi);
+}
+
+/* The steps of luma between which an area lies. */
+inline int2 steps_of(__global const uchar *luma, Area area, int width, int sigma_luma)
+{
+    uchar16 darkest = 255, brightest = 0;
+    for (int x = area.left; x < area.right; x += 16)
+        for (int y = area.top; y < area.bottom; y++) {
+            const uchar16 pixels = *(__global const lanes8 *)(luma + (ulong)y * width + min(x, width - 16));
+            darkest = min(darkest, pixels);
+            brightest = max(brightest, pixels);
+        }
+    return (int2)(lowest(darkest), 255 - lowest(~brightest)) / sigma_luma;
+}
+
+inline float sum_of_shorts(ushort16 v)
+{
+    const uint8 a = convert_uint8(v.lo) + convert_uint8(v.hi);
+    const uint4 b = a.lo + a.hi;
+    const uint2 c = b.lo + b.hi;
+    return (float)(c.lo + c.hi);
+}
+
+/* Pixels of an area in a step of luma, known ones, and the sum of their planes. */
+inline float3 count_step(__global const uchar *sparse, __global const uchar *luma, Area area, int width, short darkest,
+                         short brightest)
+{
+    float3 count = 0.0f;
+    for (int x = area.left; x < area.right; x += 16) {
+        const int first = min(x, width - 16); /* at the right border the lanes before come along */
+        const short16 column = LANE_16 + (short)(first - x);
+        const short16 inside = column >= (short)0 && column < (short)(area.right - x);
+        short16 pixels = 0, known = 0;
+        ushort16 planes = 0;
+        for (int y = area.top; y < area.bottom; y++) {
+            const ulong pixel = (ulong)y * width + first;
+            const short16 here = convert_short16(*(__global const lanes8 *)(luma + pixel));
+            const ushort16 plane = convert_ushort16(*(__global const lanes8 *)(sparse + pixel));
+            const short16 counts = (here >= darkest) & (here < brightest) & inside;
+            const short16 tells = counts & (plane != (ushort)UNKNOWN_PLANE);
+            pixels -= counts; /* true is -1 */
+            known -= tells;
+            planes += plane & as_ushort16(tells);
+        }
+        count += (float3)(sum_of_shorts(as_ushort16(pixels)), sum_of_shorts(as_ushort16(known)), sum_of_shorts(planes));
+    }
+    return count;
+}
 
 /* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
  * row_sums: (target, weight) of the row. */
 __kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight,
-                         Cells target, Cells n, __global float2 *row_sums, int width, int height, int sigma_xy, int sigma_luma)
+                         Cells target, Cells n, __global float2 *row_sums, int width, int height, int sigma_xy,
+                         int sigma_luma)
 {
-    const int row = (int)get_group_id(0), top = row * sigma_xy, bottom = min(top + sigma_xy, height);
-    uchar step_of[256];
-    for (int i = 0; i < 256; i++)
-        step_of[i] = (uchar)(i / sigma_luma);
-
+    const int top = (int)get_group_id(0) * sigma_xy;
     float2 sums = 0.0f;
-    int cell = first_cell() + COLUMN;
+    int cell = first_cell() + COLUMN + 1;
     for (int left = 0; left < width; left += sigma_xy, cell += COLUMN) {
-        const int right = min(left + sigma_xy, width);
-        ulong counts[4][COLUMN - 1]; /* one for each of 4 pixels, since adding to the same number twice must wait */
-        for (int i = 0; i < COLUMN - 1; i++)
-            counts[0][i] = counts[1][i] = counts[2][i] = counts[3][i] = 0;
-        for (int y = top; y < bottom; y++)
-            for (int x = left; x < right; x++) {
-                const ulong pixel = (ulong)y * width + x;
-                const ulong plane = sparse[pixel];
-                const ulong known = plane == UNKNOWN_PLANE ? 0 : (1UL << KNOWN_SHIFT) + (plane << PLANES_SHIFT);
-                counts[x & 3][step_of[luma[pixel]]] += 1 + known;
-            }
-        for (int i = 0; i < COLUMN - 1; i++) {
-            const ulong count = counts[0][i] + counts[1][i] + counts[2][i] + counts[3][i];
-            const float pixels = (float)(count & ((1UL << KNOWN_SHIFT) - 1));
-            const float known = (float)(count >> KNOWN_SHIFT & ((1UL << KNOWN_SHIFT) - 1));
-            const float planes = (float)(count >> PLANES_SHIFT);
-            mass[cell + 1 + i] = pixels;
-            weight[cell + 1 + i] = known;
-            target[cell + 1 + i] = planes;
-            n[cell + 1 + i] = pixels > 0.0f ? 1.0f : 0.0f;
-            sums += (float2)(planes, known);
+        const Area area = {left, min(left + sigma_xy, width), top, min(top + sigma_xy, height)};
+        const int2 steps = steps_of(luma, area, width, sigma_luma);
+        for (int step = 0; step < COLUMN - 1; step++) {
+            float3 count = 0.0f;
+            if (step >= steps.x && step <= steps.y)
+                count = count_step(sparse, luma, area, width, (short)(step * sigma_luma),
+                                   (short)((step + 1) * sigma_luma));
+            mass[cell + step] = count.x;
+            weight[cell + step] = count.y;
+            target[cell + step] = count.z;
+            n[cell + step] = count.x > 0.0f ? 1.0f : 0.0f;
+            sums += count.zy;
         }
     }
-    row_sums[row] = sums;
+    row_sums[get_group_id(0)] = sums;
 }
 
 /* One step of bistochastisation, n -> next. */

@@ -13,7 +13,8 @@
 #else
 #define UNROLL_SMALL
 #endif
-#define STRIDE (TILE_WIDTH + 2 * RADIUS + 16)
+#define ORIGIN ((RADIUS + 15) / 16 * 16) /* where a row of the tile begins in a row of scratch: whole lanes */
+#define STRIDE (ORIGIN + TILE_WIDTH + ORIGIN + 16)
 
 inline float16 symmetric_tap(const float *centre, int distance)
 {
@@ -30,7 +31,7 @@ inline void blur_columns(const float *u, __constant float *taps, float *blurred)
         sums[k] = 0.0f;
     UNROLL_SMALL
     for (int i = 0; i <= 2 * RADIUS + TOGETHER - 1; i++) {
-        const float16 here = *(const flanes *)(u + i * STRIDE);
+        const float16 here = *(const float16 *)(u + i * STRIDE);
         __attribute__((opencl_unroll_hint))
         for (int k = 0; k < TOGETHER; k++)
             if (i >= k && i <= k + 2 * RADIUS)
@@ -38,7 +39,42 @@ inline void blur_columns(const float *u, __constant float *taps, float *blurred)
     }
     __attribute__((opencl_unroll_hint))
     for (int k = 0; k < TOGETHER; k++)
-        *(flanes *)(blurred + k * STRIDE) = sums[k];
+        *(float16 *)(blurred + k * STRIDE) = sums[k];
+}
+
+inline int lowest(uchar16 v)
+{
+    const uchar8 a = min(v.lo, v.hi);
+    const uchar4 b = min(a.lo, a.hi);
+    const uchar2 c = min(b.lo, b.hi);
+    return min(c.lo, c.hi);
+}
+
+/* Slices rows y to end (mirrored) of the 16 columns from x on, which take `column`, a cell for each step of luma. Of the
+ * cells only those between the darkest and the brightest pixel are looked at; the last lanes may be other columns',
+ * which write theirs later. */
+inline void slice_cells(__global const uchar *luma, int width, int height, int x, int y, int end,
+                        __global const float *column, int sigma_luma, float *u)
+{
+    const int first = min(x, width - 16); /* at the right border the lanes before x come along */
+    uchar16 darkest = 255, brightest = 0;
+    for (int i = y; i < end; i++) {
+        const uchar16 row = *(__global const lanes8 *)(luma + (ulong)mirror(i, height) * width + first);
+        darkest = min(darkest, row);
+        brightest = max(brightest, row);
+    }
+    const int from = lowest(darkest) / sigma_luma, to = (255 - lowest(~brightest)) / sigma_luma;
+    for (int i = y; i < end; i++, u += STRIDE) {
+        const uchar16 row = *(__global const lanes8 *)(luma + (ulong)mirror(i, height) * width + first);
+        float16 position = column[from];
+        for (int step = from + 1; step <= to; step++)
+            position = select(position, (float16)column[step], convert_int16(row >= (uchar16)(uchar)(step * sigma_luma)));
+        if (first == x)
+            *(flanes *)(u + x) = position;
+        else
+            for (int lane = x - first; lane < 16; lane++)
+                u[first + lane] = ((const float *)&position)[lane];
+    }
 }
 
 /* One work-item a tile: depth[height][stride]. taps: from the Gaussian's centre outwards. With `linear` a position's
@@ -47,43 +83,43 @@ __kernel void slice_depth(__global const float *solution, __global const uchar *
                           __global const ushort *codes, __global ushort *depth, int width, int height, int stride,
                           int sigma_xy, int sigma_luma, int planes, int linear)
 {
-    float u[(TILE_HEIGHT + 2 * RADIUS + 1) * STRIDE];
-    float rows[TOGETHER * STRIDE];
-    uchar step_of[256];
+    float u[(TILE_HEIGHT + 2 * RADIUS + 1) * STRIDE] __attribute__((aligned(64)));
+    float rows[TOGETHER * STRIDE] __attribute__((aligned(64)));
     const int left = (int)get_group_id(0) * TILE_WIDTH, right = min(left + TILE_WIDTH, width);
     const int top = (int)get_group_id(1) * TILE_HEIGHT, bottom = min(top + TILE_HEIGHT, height);
 
-    for (int i = 0; i < 256; i++)
-        step_of[i] = (uchar)(i / sigma_luma);
-
-    for (int y = top - RADIUS; y < bottom + RADIUS; y++) {
-        const int picture_y = mirror(y, height);
-        __global const uchar *luma_row = luma + (ulong)picture_y * width;
-        __global const float *cells = solution + (picture_y / sigma_xy + 1) * ROW + COLUMN + 1;
-        float *out = u + (y - top + RADIUS) * STRIDE + RADIUS - left;
+    for (int y = top - RADIUS; y < bottom + RADIUS;) {
+        const int cell_row = mirror(y, height) / sigma_xy;
+        int end = y + 1;
+        while (end < bottom + RADIUS && mirror(end, height) / sigma_xy == cell_row)
+            end++;
+        __global const float *cells = solution + (cell_row + 1) * ROW + COLUMN + 1;
         const int from = max(left - RADIUS, 0), to = min(right + RADIUS, width);
+        float *out = u + (y - top + RADIUS) * STRIDE + ORIGIN - left;
         for (int x = from; x < to;) {
-            __global const float *column = cells + x / sigma_xy * COLUMN;
-            const int end = min((x / sigma_xy + 1) * sigma_xy, to);
-#pragma clang loop vectorize(disable) unroll_count(4)
-            for (; x < end; x++)
-                out[x] = column[step_of[luma_row[x]]];
+            const int column_end = min((x / sigma_xy + 1) * sigma_xy, to);
+            for (; x < column_end; x += 16)
+                slice_cells(luma, width, height, x, y, end, cells + x / sigma_xy * COLUMN, sigma_luma, out);
+            x = column_end;
         }
-        for (int x = left - RADIUS; x < from; x++)
-            out[x] = out[min(-x, to - 1)];
-        for (int x = to; x < right + RADIUS; x++)
-            out[x] = out[max(2 * width - 2 - x, from)];
+        for (; y < end; y++, out += STRIDE) {
+            for (int x = left - RADIUS; x < from; x++)
+                out[x] = out[min(-x, to - 1)];
+            for (int x = to; x < right + RADIUS; x++)
+                out[x] = out[max(2 * width - 2 - x, from)];
+        }
     }
 
     const float top_code = 65534.0f / (planes - 1);
     for (int y = top; y < bottom; y++) {
         if ((y - top) % TOGETHER == 0)
-            for (int x = 0; x < right - left + 2 * RADIUS; x += 16)
+            for (int x = 0; x < ORIGIN + right - left + RADIUS; x += 16)
                 blur_columns(u + (y - top) * STRIDE + x, taps, rows + x);
         const float *row = rows + (y - top) % TOGETHER * STRIDE;
         for (int x = 0; x < right - left; x += 16) {
-            const float *centre = row + RADIUS + x;
+            const float *centre = row + ORIGIN + x;
             float16 sum = taps[0] * *(const flanes *)centre;
+            UNROLL_SMALL
             for (int i = 1; i <= RADIUS; i++)
                 sum += taps[i] * symmetric_tap(centre, i);
             const float16 code = clamp(sum * top_code, 0.0f, 65534.0f) + 1.5f;
