@@ -15,7 +15,7 @@ build_packages=(
 test_packages=(
     libgtest-dev libasan8 libubsan1 clang-format clang-tidy
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
-    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg vlc-bin vlc-plugin-base)
+    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg)
 
 # say TEXT: one line about what happens now, with the minutes and seconds since the start.
 say() {

@@ -29,6 +29,9 @@ public:
     void attach(const std::string &output, std::shared_ptr<Outlet> outlet);
     void detach(const std::shared_ptr<Outlet> &outlet);
 
+    /* Whether there are outlets. */
+    bool is_wanted() const;
+
     /* What the last depth frame said of its pixels; nothing before the first. */
     std::optional<GstDepthInfo> depth_info() const;
 
@@ -39,7 +42,6 @@ private:
     void restart_later(const std::string &reason);
 
     void publish(const std::string &output, const CapturedFrame &frame);
-    bool is_wanted() const;
 
     const std::string launch_;
     std::set<std::string> outputs_;

@@ -19,6 +19,21 @@ template <typename T> ObjectPointer<T> share(T *object)
     return ObjectPointer<T>(static_cast<T *>(g_object_ref(object)));
 }
 
+/* Points at a GObject while it lives. */
+template <typename T> class WeakPointer {
+public:
+    WeakPointer() { g_weak_ref_init(&reference_, nullptr); }
+    ~WeakPointer() { g_weak_ref_clear(&reference_); }
+    WeakPointer(const WeakPointer &) = delete;
+    WeakPointer &operator=(const WeakPointer &) = delete;
+
+    void set(T *object) { g_weak_ref_set(&reference_, object); }
+    ObjectPointer<T> get() { return ObjectPointer<T>(static_cast<T *>(g_weak_ref_get(&reference_))); }
+
+private:
+    GWeakRef reference_;
+};
+
 struct SampleUnref {
     void operator()(GstSample *sample) const { gst_sample_unref(sample); }
 };

@@ -21,8 +21,7 @@ gboolean quit(gpointer loop)
 
 void serve(const dff::ServerOptions &options)
 {
-    dff::Capture capture(options.launch);
-    const dff::Server server(options, capture);
+    const dff::Server server(options, std::make_shared<dff::Capture>(options.launch));
     const dff::ObjectPointer<GstElementFactory> extension(gst_element_factory_find("rtphdrextdff"));
     if (!extension)
         g_warning("Plane and depth facts of each frame are not sent: the plug-in dffrtp is missing");

@@ -12,6 +12,7 @@ namespace dff {
 namespace {
 
 constexpr guint seconds_between_cleanups = 2;
+constexpr gint64 microseconds_to_close = 3 * G_USEC_PER_SEC;
 
 bool is_possible(const Mount &mount, const std::set<std::string> &outputs)
 {
@@ -44,14 +45,15 @@ void welcome(GstRTSPServer *, GstRTSPClient *client, gpointer)
 
 } // namespace
 
-Server::Server(const ServerOptions &options, Capture &capture)
-    : server_(gst_rtsp_server_new()), scheme_(options.certificate.empty() ? "rtsp" : "rtsps")
+Server::Server(const ServerOptions &options, std::shared_ptr<Capture> capture)
+    : capture_(std::move(capture)), server_(gst_rtsp_server_new()),
+      scheme_(options.certificate.empty() ? "rtsp" : "rtsps")
 {
     const ObjectPointer<GstRTSPAuth> auth = make_auth(options);
     gst_rtsp_server_set_auth(server_.get(), auth.get());
     gst_rtsp_server_set_address(server_.get(), options.address.c_str());
     gst_rtsp_server_set_service(server_.get(), std::to_string(options.port).c_str());
-    add_mounts(capture, auth != nullptr, !options.certificate.empty());
+    add_mounts(auth != nullptr, !options.certificate.empty());
     watch_clients(options.max_clients);
 
     g_autoptr(GError) error = nullptr;
@@ -70,15 +72,19 @@ Server::~Server()
         g_source_remove(accept_source_);
     const auto close = [](GstRTSPServer *, GstRTSPClient *, gpointer) { return GST_RTSP_FILTER_REMOVE; };
     gst_rtsp_server_client_filter(server_.get(), close, nullptr);
+    const gint64 deadline = g_get_monotonic_time() + microseconds_to_close;
+    while (capture_->is_wanted() && g_get_monotonic_time() < deadline)
+        if (!g_main_context_iteration(nullptr, FALSE))
+            g_usleep(1000);
 }
 
-void Server::add_mounts(Capture &capture, bool with_auth, bool tcp_only)
+void Server::add_mounts(bool with_auth, bool tcp_only)
 {
     const ObjectPointer<GstRTSPMountPoints> mount_points(gst_rtsp_server_get_mount_points(server_.get()));
     for (const Mount &mount : all_mounts()) {
-        if (!is_possible(mount, capture.outputs()))
+        if (!is_possible(mount, capture_->outputs()))
             continue;
-        ObjectPointer<GstRTSPMediaFactory> factory = make_factory(mount, capture, tcp_only);
+        ObjectPointer<GstRTSPMediaFactory> factory = make_factory(mount, capture_, tcp_only);
         if (with_auth)
             restrict_to_viewers(factory.get());
         gst_rtsp_mount_points_add_factory(mount_points.get(), mount.path.c_str(), factory.release());

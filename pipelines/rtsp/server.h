@@ -15,10 +15,10 @@ namespace dff {
  * context. */
 class Server {
 public:
-    /* Listens from here on. `capture` outlives it. Throws std::invalid_argument or std::runtime_error, with a
+    /* Listens from here on. Throws std::invalid_argument or std::runtime_error, with a
      * text for the user, if the certificate cannot be read or the port cannot be had. */
-    Server(const ServerOptions &options, Capture &capture);
-    ~Server();
+    Server(const ServerOptions &options, std::shared_ptr<Capture> capture);
+    ~Server(); /* waits a moment until the clients are gone */
     Server(const Server &) = delete;
     Server &operator=(const Server &) = delete;
 
@@ -26,9 +26,10 @@ public:
     std::vector<std::string> urls() const;
 
 private:
-    void add_mounts(Capture &capture, bool with_auth, bool tcp_only);
+    void add_mounts(bool with_auth, bool tcp_only);
     void watch_clients(int max_clients);
 
+    const std::shared_ptr<Capture> capture_;
     ObjectPointer<GstRTSPServer> server_;
     std::string scheme_;
     std::vector<std::string> paths_;

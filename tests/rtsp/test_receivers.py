@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""What is printed for users, as printed: players that are not GStreamer, receive.py, one machine that captures for another."""
+import contextlib
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from rtsp_client import PATIENCE, Server
+
+SWEEPS = 'lenssweeptestsrc seed=3 planes=4 rate=5 near=5 far=1 motion=2 {} ! video/x-raw,format=I420,width=96,height=64'
+LIVE = SWEEPS.format('is-live=true')
+RIG = (f'{LIVE} ! focalstackmux ! tee name=stacks  stacks. ! queue ! dffdepth ! tee name=depth '
+       'stacks. ! queue ! compose.stack  depth. ! queue ! compose.depth  aifcompose name=compose ! identity name=aif')
+FRAME_BYTES = 96 * 64 * 2
+RECEIVE = pathlib.Path(__file__).parents[2] / 'pipelines/rtsp/receive.py'
+
+
+def launch(pipeline, *before):
+    environment = dict(os.environ)
+    if 'DFF_PRELOAD' in environment:  # gst-launch-1.0 is not built with the sanitizers that our plug-ins want
+        environment['LD_PRELOAD'] = environment['DFF_PRELOAD']
+    subprocess.run([*before, 'gst-launch-1.0', '-q', '-e', *pipeline.split()], env=environment, check=True,
+                   timeout=2 * PATIENCE)
+
+
+def frames_of(path):
+    data = pathlib.Path(path).read_bytes()
+    return [hashlib.sha256(data[at:at + FRAME_BYTES]).digest() for at in range(0, len(data), FRAME_BYTES)]
+
+
+@contextlib.contextmanager
+def second_machine():
+    """Another network namespace, 10.0.0.2, with a cable to this one, 10.0.0.1; yields what to put before its commands."""
+    with subprocess.Popen(['unshare', '-n', 'sh', '-c', 'echo; exec sleep 300'], stdout=subprocess.PIPE) as holder:
+        holder.stdout.readline()
+        there = ['nsenter', '-t', str(holder.pid), '-n']
+        for command in ([f'ip link add here type veth peer name there netns {holder.pid}', 'ip addr add 10.0.0.1/24 dev here',
+                         'ip link set here up']):
+            subprocess.run(command.split(), check=True)
+        for command in ['ip addr add 10.0.0.2/24 dev there', 'ip link set there up', 'ip link set lo up']:
+            subprocess.run([*there, *command.split()], check=True)
+        yield there
+        holder.kill()
+
+
+class Receivers(unittest.TestCase):
+    def test_ffmpeg_plays_colour_and_hue(self):
+        with Server(RIG) as server:
+            for path, protocol in (('/color', 'tcp'), ('/hue', 'udp'), ('/stream', 'tcp')):
+                with self.subTest(path=path, protocol=protocol):
+                    played = subprocess.run(
+                        ['ffmpeg', '-v', 'error', '-analyzeduration', '500000', '-rtsp_transport', protocol,
+                         '-i', server.url(path), '-frames:v', '3', '-f', 'framecrc', '-'],
+                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=PATIENCE, check=True, text=True)
+                    self.assertEqual(len(re.findall('^0,', played.stdout, re.MULTILINE)), 3)
+
+    @unittest.skipIf('DFF_PRELOAD' in os.environ, 'Python does not load what is built with sanitizers')
+    def test_receive_py_gives_millimetres(self):
+        with Server(RIG) as server:
+            for path in ('/depth', '/hue'):
+                with self.subTest(path=path):
+                    printed = subprocess.run(['/usr/bin/python3', RECEIVE, server.url(path), '5'], stdout=subprocess.PIPE,
+                                             timeout=2 * PATIENCE, check=True, text=True).stdout
+                    nearest = [float(value) for value in re.findall(r'nearest +(\d+) mm', printed)]
+                    self.assertEqual(len(nearest), 5, printed)
+                    for value in nearest:  # the sweep spans 5 to 1 dioptres
+                        self.assertTrue(195 <= value <= 1010, printed)
+
+    def test_one_machine_captures_for_another(self):
+        with tempfile.TemporaryDirectory() as folder, second_machine() as there:
+            received, expected = f'{folder}/received', f'{folder}/expected'
+            with Server(f'{LIVE} ! identity name=planes', address='10.0.0.1') as server:
+                launch(f'rtspsrc location={server.url("/planes")} protocols=tcp latency=300 ! rtpgstdepay ! focalstackmux ! '
+                       f'dffdepth ! identity eos-after=6 ! filesink location={received}', *there)
+            launch(f'{SWEEPS.format("num-buffers=160")} ! focalstackmux ! dffdepth ! filesink location={expected}')
+            first = frames_of(expected).index(frames_of(received)[0])
+            count = len(frames_of(received))
+            self.assertGreaterEqual(count, 5)
+            self.assertEqual(frames_of(received), frames_of(expected)[first:first + count])
+
+
+if __name__ == '__main__':
+    unittest.main()
