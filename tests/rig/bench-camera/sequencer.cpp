@@ -3,6 +3,7 @@
 #include "sequencer.h"
 
 #include <chrono>
+#include <cmath>
 
 namespace dff {
 
@@ -63,7 +64,8 @@ void Sequencer::pulse(uint64_t count, uint64_t time_ns)
 
 void Sequencer::sweep_while_running(std::unique_lock<std::mutex> &lock, const std::stop_token &stop)
 {
-    const double period = 1.0 / (settings_.rate * settings_.planes);
+    /* Whole microseconds, which is what the FPGA counts in. */
+    const double period = std::floor(1e6 / (settings_.rate * settings_.planes)) * 1e-6;
     const Time begin = std::chrono::steady_clock::now();
     bool broken_off = false;
     for (uint64_t count = 0; !settings_.sweeps || count < *settings_.sweeps * settings_.planes; count++) {
