@@ -4,6 +4,9 @@
 #include "config.h"
 #endif
 
+#ifdef HAVE_ARAVIS
+#include "lenssweepsrc.h"
+#endif
 #include "lenssweeptag.h"
 #include "lenssweeptestsrc.h"
 
@@ -11,6 +14,10 @@ static gboolean plugin_init(GstPlugin *plugin)
 {
     const gboolean tag = GST_ELEMENT_REGISTER(lenssweeptag, plugin);
     const gboolean test_src = GST_ELEMENT_REGISTER(lenssweeptestsrc, plugin);
+#ifdef HAVE_ARAVIS
+    if (!GST_ELEMENT_REGISTER(lenssweepsrc, plugin))
+        return FALSE;
+#endif
     return tag && test_src;
 }
 

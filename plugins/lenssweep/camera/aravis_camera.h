@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "camera_control.h"
+#include "frame_numbers.h"
+#include "glib_handles.h"
+
+#include <arv.h>
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace dff {
+
+/* A rectangle of the sensor's. */
+struct CameraRegion {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+};
+
+/* What widths or heights a camera can have. */
+struct CameraExtent {
+    int least;
+    int most;
+    int step;
+};
+
+/* A GenICam camera by Aravis. Calls may come from any thread. A call on a camera that is gone takes until
+ * Aravis has tried a few times, some seconds, and then throws. */
+class AravisCamera : public CameraControl {
+public:
+    /* Opens a camera by its id, serial number, MAC or IP address, as `arv-tool-0.8` lists them; an empty name
+     * is the first one found, "Fake_1" one that Aravis simulates. Throws CameraError, with a list of the
+     * cameras found. */
+    explicit AravisCamera(const std::string &name);
+    ~AravisCamera() override;
+
+    /* `gone` is called, from a thread of Aravis's, when the camera does not answer any more. */
+    void on_gone(std::function<void()> gone);
+    bool gone() const { return gone_; }
+
+    ArvCamera *handle() const { return camera_.get(); }
+
+    /* "vendor model serial" */
+    std::string title() const;
+    FrameNumbering numbering();
+
+    /* Bits a second of its link; 0 if it is not known. GigE Vision without a word on it: 1 Gbit/s. */
+    double link_bits();
+
+    /* Bytes of an IP packet; 0 if it is no GigE Vision camera. */
+    unsigned packet();
+
+    /* Whether its clock follows PTP. */
+    bool has_ptp();
+
+    std::vector<std::string> pixel_formats();
+    std::string pixel_format();
+    void set_pixel_format(const std::string &format);
+    CameraRegion region();
+    void set_region(const CameraRegion &region);
+    CameraExtent widths();
+    CameraExtent heights();
+    std::size_t payload();
+
+    void start_acquisition();
+    void stop_acquisition() noexcept;
+
+    bool has(const std::string &feature) override;
+    bool is_integer(const std::string &feature) override;
+    double get_float(const std::string &feature) override;
+    void set_float(const std::string &feature, double value) override;
+    std::pair<double, double> float_range(const std::string &feature) override;
+    std::int64_t get_integer(const std::string &feature) override;
+    void set_integer(const std::string &feature, std::int64_t value) override;
+    std::pair<std::int64_t, std::int64_t> integer_range(const std::string &feature) override;
+    std::string get_enumeration(const std::string &feature) override;
+    void set_enumeration(const std::string &feature, const std::string &value) override;
+    std::vector<std::string> enumeration_values(const std::string &feature) override;
+    void execute(const std::string &command) override;
+    bool get_boolean(const std::string &feature) override;
+    void set_boolean(const std::string &feature, bool value) override;
+    void set_features(const std::string &text) override;
+
+private:
+    template <typename Call> auto call(const std::string &what, Call call);
+
+    /* Guards Aravis's tree of features, whose nodes are not made for threads. Nothing is locked within. */
+    std::mutex mutex_;
+    ObjectRef<ArvCamera> camera_;
+    std::atomic<bool> gone_ = false;
+    std::mutex gone_mutex_; /* guards on_gone_, which is called with it held */
+    std::function<void()> on_gone_;
+    gulong gone_signal_ = 0;
+};
+
+} // namespace dff

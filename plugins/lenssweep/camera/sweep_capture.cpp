@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "sweep_capture.h"
+
+#include "camera_error.h"
+#include "free_run.h"
+#include "line_triggers.h"
+#include "software_triggers.h"
+
+#include "lenssweep/lens/open_lens.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+namespace dff {
+
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr unsigned most_failures = 5;
+
+std::unique_ptr<Lens> open(const CaptureSettings &settings, AravisCamera &camera)
+{
+    return open_lens(LensUri::parse(settings.lens), {settings.lens_profile, &camera});
+}
+
+} // namespace
+
+SweepCapture::SweepCapture(const CaptureSettings &settings)
+    : settings_(settings), camera_(settings.camera), lens_(open(settings, camera_)),
+      run_(settings.run_line.empty() ? nullptr : open_output_line(settings.run_line)),
+      sync_(settings.sync_line.empty() ? nullptr : open_edge_line(settings.sync_line))
+{
+    check_parts();
+    camera_.on_gone([this] { interrupt(); });
+    set_exposure(camera_, settings_.exposure_us);
+    if (settings_.gain)
+        set_gain(camera_, *settings_.gain);
+    if (!settings_.features.empty())
+        camera_.set_features(settings_.features);
+    set_timing();
+}
+
+SweepCapture::~SweepCapture()
+{
+    stop();
+    camera_.on_gone(nullptr);
+}
+
+void SweepCapture::check_parts() const
+{
+    const bool stepped = dynamic_cast<SteppedLens *>(lens_.get());
+    const bool sequenced = dynamic_cast<SequencedLens *>(lens_.get());
+    if (stepped && settings_.trigger != TriggerKind::Software)
+        throw std::invalid_argument("the lens " + settings_.lens +
+                                    " is moved step by step and needs trigger=software");
+    if (sequenced && settings_.trigger != TriggerKind::Line)
+        throw std::invalid_argument("the lens " + settings_.lens +
+                                    " triggers the camera itself and needs trigger=line");
+    if ((run_ || sync_) && settings_.trigger != TriggerKind::Line)
+        throw std::invalid_argument("run-line and sync-line go with trigger=line only");
+}
+
+/* Whole microseconds, which is what sequencers count in. */
+void SweepCapture::set_timing()
+{
+    const auto period_us = static_cast<std::int64_t>(std::floor(1e6 / settings_.frame_rate()));
+    timing_.planes = settings_.plan.planes();
+    timing_.period_ns = period_us * 1000;
+    timing_.sweep_ns = timing_.planes * timing_.period_ns;
+    timing_.exposure_ns = std::llround(settings_.exposure_us * 1000);
+}
+
+void SweepCapture::make_triggers()
+{
+    if (triggers_) {
+        before_ = counts();
+        sweep_base_ = next_sweep_;
+    }
+    const FrameNumbers numbers(camera_.numbering());
+    const auto woken = [this] { interrupt(); };
+    if (settings_.trigger == TriggerKind::FreeRun)
+        triggers_ = std::make_unique<FreeRun>(timing_, numbers);
+    else if (settings_.trigger == TriggerKind::Software)
+        triggers_ = std::make_unique<SoftwareTriggers>(timing_, numbers, camera_,
+                                                       dynamic_cast<SteppedLens *>(lens_.get()), woken);
+    else
+        triggers_ = std::make_unique<LineTriggers>(
+            timing_, numbers,
+            LineTriggers::Parts{dynamic_cast<SequencedLens *>(lens_.get()), run_.get(), sync_.get()}, woken);
+}
+
+void SweepCapture::start(const PixelLayout &layout, int width, int height)
+{
+    stop();
+    CameraRegion region = camera_.region();
+    if (region.width != width || region.height != height)
+        region = {0, 0, width, height};
+    camera_.set_pixel_format(layout.genicam);
+    camera_.set_region(region);
+    set_up_trigger(camera_, {settings_.trigger, settings_.trigger_source, settings_.frame_rate()});
+    lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
+                    std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
+
+    buffers_ = std::max(16U, static_cast<unsigned>(std::lround(settings_.frame_rate() / 4)));
+    auto stream = std::make_unique<CameraStream>(camera_, buffers_, camera_.payload());
+    {
+        const std::lock_guard lock(stream_mutex_);
+        stream_ = std::move(stream);
+    }
+    make_triggers();
+    camera_.start_acquisition();
+    wait_armed();
+    begin_triggers();
+}
+
+/* A camera that does not say so is taken to be armed when it has started. */
+void SweepCapture::wait_armed()
+{
+    if (settings_.trigger == TriggerKind::FreeRun)
+        return;
+    for (int i = 0; i < 100 && !trigger_armed(camera_); i++)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+void SweepCapture::begin_triggers()
+{
+    quiet_until_ns_.reset();
+    last_frame_ns_ = host_now_ns();
+    triggers_->start();
+}
+
+void SweepCapture::stop() noexcept
+{
+    if (triggers_)
+        triggers_->stop();
+    if (!stream_)
+        return;
+    camera_.stop_acquisition();
+    const std::lock_guard lock(stream_mutex_);
+    stream_.reset();
+}
+
+void SweepCapture::change(const CaptureSettings &settings)
+{
+    const bool timing_changed =
+        settings.rate != settings_.rate || settings.exposure_us != settings_.exposure_us;
+    if (settings.exposure_us != settings_.exposure_us)
+        set_exposure(camera_, settings.exposure_us);
+    if (settings.gain && settings.gain != settings_.gain)
+        set_gain(camera_, *settings.gain);
+    if (settings.rate != settings_.rate && settings_.trigger == TriggerKind::FreeRun)
+        set_frame_rate(camera_, settings.frame_rate());
+    settings_.rate = settings.rate;
+    settings_.exposure_us = settings.exposure_us;
+    settings_.gain = settings.gain;
+    if (!timing_changed)
+        return;
+    set_timing();
+    if (!stream_)
+        return;
+    triggers_->stop();
+    lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
+                    std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
+    make_triggers();
+    quiet_until_ns_ = host_now_ns() + 2 * timing_.sweep_ns;
+}
+
+/* The planes cannot be told any more. */
+void SweepCapture::recover()
+{
+    failures_++;
+    const bool counted = settings_.trigger == TriggerKind::Line && !sync_;
+    if (counted && !triggers_->restartable())
+        throw CameraError(
+            "The triggers rested, or the camera missed one, and nothing tells which plane comes "
+            "next. Start again; to go on by itself this element needs sync-line or run-line.");
+    if (failures_ > most_failures && settings_.trigger != TriggerKind::FreeRun)
+        throw CameraError(
+            "The camera's frames and the triggers do not fit together. Check that planes and rate are "
+            "those of the sequencer, that sync-line pulses at plane 0, and that the camera takes every "
+            "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure.");
+    restarts_++;
+    if (triggers_->restartable()) {
+        triggers_->stop();
+        quiet_until_ns_ = host_now_ns() + 2 * timing_.sweep_ns;
+    } else {
+        triggers_->start();
+    }
+}
+
+std::optional<CapturedPlane> SweepCapture::labelled(CameraBuffer buffer)
+{
+    last_frame_ns_ = host_now_ns();
+    if (!buffer.complete()) {
+        incomplete_++;
+        return std::nullopt;
+    }
+    if (quiet_until_ns_)
+        return std::nullopt;
+    const CameraFrame frame = buffer.facts();
+    const auto verdict = triggers_->label(frame);
+    if (triggers_->lost())
+        recover();
+    if (!verdict.label)
+        return std::nullopt;
+    failures_ = 0;
+    const std::int64_t exposed_ns = clock_.exposed_ns(frame, timing_.exposure_ns);
+    const std::uint64_t sweep = sweep_base_ + verdict.label->sweep;
+    next_sweep_ = std::max(next_sweep_, sweep + 1);
+    return CapturedPlane{std::move(buffer), frame, sweep, verdict.label->plane,
+                         verdict.label->trigger_ns.value_or(exposed_ns)};
+}
+
+std::optional<CapturedPlane> SweepCapture::next(std::int64_t deadline_ns)
+{
+    std::int64_t now_ns = host_now_ns();
+    if (camera_.gone())
+        throw CameraError(
+            "The camera does not answer any more. Check its cable and power, then start again.");
+    if (now_ns >= next_check_ns_) {
+        triggers_->check();
+        next_check_ns_ = now_ns + second_ns;
+    }
+    if (quiet_until_ns_ && now_ns >= *quiet_until_ns_)
+        begin_triggers();
+    auto buffer =
+        stream_->wait(std::min({deadline_ns, next_check_ns_, quiet_until_ns_.value_or(deadline_ns)}));
+    return buffer ? labelled(std::move(*buffer)) : std::nullopt;
+}
+
+void SweepCapture::interrupt()
+{
+    const std::lock_guard lock(stream_mutex_);
+    if (stream_)
+        stream_->interrupt();
+}
+
+CaptureCounts SweepCapture::counts() const
+{
+    CaptureCounts counts = before_;
+    const LabelCounts labels = triggers_ ? triggers_->counts() : LabelCounts{};
+    counts.labels.labelled += labels.labelled;
+    counts.labels.unlabelled += labels.unlabelled;
+    counts.labels.lost += labels.lost;
+    counts.labels.doubled += labels.doubled;
+    counts.labels.disagreements += labels.disagreements;
+    counts.labels.dropped_sweeps += labels.dropped_sweeps;
+    counts.wrong_edges += triggers_ ? triggers_->wrong_edges() : 0;
+    counts.incomplete = incomplete_;
+    counts.underruns = stream_ ? stream_->underruns() : 0;
+    counts.restarts = restarts_;
+    return counts;
+}
+
+LinkLoad SweepCapture::load()
+{
+    return {settings_.frame_rate(),       camera_.payload(),   settings_.exposure_us,
+            1e6 / settings_.frame_rate(), camera_.link_bits(), camera_.packet()};
+}
+
+} // namespace dff
