@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/* The server's parts, without a network. */
+#include "back_off.h"
+#include "depth_attributes.h"
+#include "server.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(BackOff, doubles_up_to_ten_seconds_and_starts_again)
+{
+    dff::BackOff back_off;
+    EXPECT_EQ(back_off.next(), milliseconds(500));
+    EXPECT_EQ(back_off.next(), milliseconds(1000));
+    for (int k = 0; k < 10; k++)
+        back_off.next();
+    EXPECT_EQ(back_off.next(), milliseconds(10000));
+    back_off.succeeded();
+    EXPECT_EQ(back_off.next(), milliseconds(500));
+}
+
+TEST(DepthAttributes, what_is_not_known_is_left_out)
+{
+    GstDepthInfo info;
+    gst_depth_info_init(&info);
+    info.scale = 0.1;
+    const auto attributes = dff::depth_attributes(info);
+    ASSERT_EQ(attributes.size(), 3U);
+    EXPECT_EQ(attributes[0].second, "index");
+    EXPECT_EQ(std::stod(attributes[1].second), 0.1);
+}
+
+TEST(DepthAttributes, intrinsics_are_nine_numbers)
+{
+    GstDepthInfo info;
+    gst_depth_info_init(&info);
+    info.near = 5;
+    info.far = 0;
+    info.has_intrinsics = TRUE;
+    info.fx = 600.5;
+    info.distortion[4] = -0.25;
+    const auto attributes = dff::depth_attributes(info);
+    EXPECT_EQ(attributes.back().first, "depth-intrinsics");
+    EXPECT_EQ(attributes.back().second, "600.5 0 0 0 0 0 0 0 -0.25");
+}
+
+std::set<std::string> outputs_of(const std::string &launch)
+{
+    return dff::SourcePipeline(launch).outputs();
+}
+
+TEST(SourcePipeline, outputs_are_found_by_the_names_of_elements_tees_and_pads)
+{
+    using Outputs = std::set<std::string>;
+    EXPECT_EQ(outputs_of("videotestsrc name=depth"), Outputs{"depth"});
+    EXPECT_EQ(outputs_of("videotestsrc ! tee name=aif  aif. ! fakesink  videotestsrc name=planes"),
+              (Outputs{"aif", "planes"}));
+    EXPECT_EQ(outputs_of(
+                  "lenssweeptestsrc name=camera  camera.depth ! fakesink  camera.src ! identity name=planes"),
+              Outputs{"planes"});
+}
+
+TEST(SourcePipeline, a_pipeline_without_outputs_is_refused)
+{
+    EXPECT_THROW(outputs_of("videotestsrc ! fakesink"), std::invalid_argument);
+    EXPECT_THROW(outputs_of("videotestsrc name=depth ! fakesink"), std::invalid_argument);
+    EXPECT_THROW(outputs_of("videotestsrc ! no-such-element"), std::invalid_argument);
+    EXPECT_THROW(outputs_of(""), std::invalid_argument);
+}
+
+dff::ServerOptions parse(std::vector<std::string> arguments)
+{
+    arguments.insert(arguments.begin(), "dff-rtsp-server");
+    std::vector<char *> pointers;
+    for (std::string &argument : arguments)
+        pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    return dff::parse_options(static_cast<int>(arguments.size()), pointers.data());
+}
+
+TEST(ServerOptions, nonsense_is_refused)
+{
+    EXPECT_THROW(parse({"--no-such-option"}), std::invalid_argument);
+    EXPECT_THROW(parse({"stray"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--port", "70000"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--max-clients", "0"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--account", "no-password"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--account", ":secret"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--accounts", "/no/such/file"}), std::invalid_argument);
+}
+
+TEST(ServerOptions, the_default_source_gives_every_output)
+{
+    const dff::ServerOptions options = parse({});
+    EXPECT_EQ(options.port, 8554);
+    EXPECT_EQ(outputs_of(options.launch), (std::set<std::string>{"aif", "depth", "planes"}));
+}
+
+TEST(Server, says_why_it_cannot_listen_or_encrypt)
+{
+    dff::ServerOptions options;
+    options.address = "127.0.0.1";
+    options.port = 0;
+    const auto capture = std::make_shared<dff::Capture>("videotestsrc name=depth");
+    options.certificate = "/no/such/file";
+    EXPECT_THROW(dff::Server(options, capture), std::invalid_argument);
+    options.certificate.clear();
+
+    const dff::Server first(options, capture);
+    const std::string url = first.urls().at(0);
+    const size_t colon = url.rfind(':');
+    options.port = std::stoi(url.substr(colon + 1));
+    EXPECT_THROW(dff::Server(options, capture), std::runtime_error);
+}
+
+} // namespace
