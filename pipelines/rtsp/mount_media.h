@@ -9,8 +9,8 @@
 
 namespace dff {
 
-/* Makes the media of a mount: one for all its clients, whatever stands behind the path of the URL. With `tcp_only`,
- * clients may not ask for UDP. `mount` outlives it. */
+/* Makes the media of a mount: one for all its clients, whatever stands behind the path of the URL. With
+ * `tcp_only`, clients may not ask for UDP. `mount` outlives it. */
 ObjectPointer<GstRTSPMediaFactory> make_factory(const Mount &mount, std::shared_ptr<Capture> capture,
                                                 bool tcp_only);
 

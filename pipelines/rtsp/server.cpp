@@ -3,6 +3,7 @@
 #include "server.h"
 
 #include "accounts.h"
+#include "client_limit.h"
 #include "mount_media.h"
 
 #include <stdexcept>
@@ -28,21 +29,6 @@ bool is_possible(const Mount &mount, const std::set<std::string> &outputs)
     return true;
 }
 
-/* The session pool refuses the SETUP of one client too many; this tells it before the capture is started for
- * it. */
-GstRTSPStatusCode check_room(GstRTSPClient *client, GstRTSPContext *context, gpointer)
-{
-    const ObjectPointer<GstRTSPSessionPool> pool(gst_rtsp_client_get_session_pool(client));
-    const bool has_room =
-        gst_rtsp_session_pool_get_n_sessions(pool.get()) < gst_rtsp_session_pool_get_max_sessions(pool.get());
-    return has_room || context->session ? GST_RTSP_STS_OK : GST_RTSP_STS_SERVICE_UNAVAILABLE;
-}
-
-void welcome(GstRTSPServer *, GstRTSPClient *client, gpointer)
-{
-    g_signal_connect(client, "pre-describe-request", G_CALLBACK(check_room), nullptr);
-}
-
 } // namespace
 
 Server::Server(const ServerOptions &options, std::shared_ptr<Capture> capture)
@@ -54,7 +40,8 @@ Server::Server(const ServerOptions &options, std::shared_ptr<Capture> capture)
     gst_rtsp_server_set_address(server_.get(), options.address.c_str());
     gst_rtsp_server_set_service(server_.get(), std::to_string(options.port).c_str());
     add_mounts(auth != nullptr, !options.certificate.empty());
-    watch_clients(options.max_clients);
+    limit_clients(server_.get(), static_cast<unsigned>(options.max_clients));
+    clean_up_regularly();
 
     g_autoptr(GError) error = nullptr;
     GSource *source = gst_rtsp_server_create_source(server_.get(), nullptr, &error);
@@ -92,23 +79,15 @@ void Server::add_mounts(bool with_auth, bool tcp_only)
     }
 }
 
-void Server::watch_clients(int max_clients)
+void Server::clean_up_regularly()
 {
-    /* A thread a client: a slow one, or one that waits for the source to start, holds up nobody else. */
-    const ObjectPointer<GstRTSPThreadPool> threads(gst_rtsp_server_get_thread_pool(server_.get()));
-    gst_rtsp_thread_pool_set_max_threads(threads.get(), -1);
-
-    const ObjectPointer<GstRTSPSessionPool> sessions(gst_rtsp_server_get_session_pool(server_.get()));
-    gst_rtsp_session_pool_set_max_sessions(sessions.get(), static_cast<guint>(max_clients));
-    g_signal_connect(server_.get(), "client-connected", G_CALLBACK(welcome), nullptr);
-
-    const auto cleanup = +[](gpointer server) -> gboolean {
+    const auto clean_up = +[](gpointer server) -> gboolean {
         const ObjectPointer<GstRTSPSessionPool> pool(
             gst_rtsp_server_get_session_pool(GST_RTSP_SERVER(server)));
         gst_rtsp_session_pool_cleanup(pool.get());
         return G_SOURCE_CONTINUE;
     };
-    cleanup_source_ = g_timeout_add_seconds(seconds_between_cleanups, cleanup, server_.get());
+    cleanup_source_ = g_timeout_add_seconds(seconds_between_cleanups, clean_up, server_.get());
 }
 
 std::vector<std::string> Server::urls() const

@@ -27,7 +27,7 @@ public:
 
 private:
     void add_mounts(bool with_auth, bool tcp_only);
-    void watch_clients(int max_clients);
+    void clean_up_regularly(); /* sessions that timed out */
 
     const std::shared_ptr<Capture> capture_;
     ObjectPointer<GstRTSPServer> server_;

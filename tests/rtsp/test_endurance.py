@@ -24,7 +24,7 @@ DEPTH = ('videotestsrc is-live=true pattern=snow ! '
 
 class Endurance(unittest.TestCase):
     def setUp(self):
-        self.server = self.enterContext(Server(DEPTH))
+        self.server = self.enterContext(Server(DEPTH, '--max-clients', '12'))
         for _ in range(3):  # what is loaded and cached once
             self.come_and_go()
         self.witness = Witness(self.server, '/depth')
@@ -82,10 +82,10 @@ class Endurance(unittest.TestCase):
 
     def test_clients_that_are_killed(self):
         for _ in range(CYCLES):
-            client = Client(self.server, '/depth')
-            self.assertEqual(client.play(), 200)
-            client.packet()
-            client.kill()
+            with Client(self.server, '/depth') as client:
+                self.assertEqual(client.play(), 200)
+                client.packet()
+                client.kill()
         self.check()
 
     def test_malformed_requests(self):
