@@ -2,11 +2,13 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "aifcompose.h"
 #include "config.h"
+#include "dffcamerabin.h"
 #include "dffdepth.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
-    return GST_ELEMENT_REGISTER(dffdepth, plugin) && GST_ELEMENT_REGISTER(aifcompose, plugin);
+    return GST_ELEMENT_REGISTER(dffdepth, plugin) && GST_ELEMENT_REGISTER(aifcompose, plugin) &&
+           GST_ELEMENT_REGISTER(dffcamerabin, plugin);
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, dffdepth,

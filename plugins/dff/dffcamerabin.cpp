@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+/**
+ * SECTION:element-dffcamerabin
+ * @title: dffcamerabin
+ * @short_description: a depth camera in one element
+ *
+ * Hides the graph from swept planes to depth and all-in-focus pictures. `source` is any bin description that
+ * gives frames with a GstFocusMeta (lenssweepsrc, lenssweeptestsrc, a camera and lenssweeptag, a recording)
+ * or focal stacks.
+ *
+ * Link `depth`, `aif`, or both, before or while it runs; what is not linked is not computed. The request pad
+ * `lightfield` gives pictures for a light-field display, where lightfieldcompose is installed.
+ *
+ * The properties of dffdepth and aifcompose are properties of the bin as well; all others are reached as
+ * child properties: `mux::on-missing=repeat`, `source::...`, `lightfield::layout=quilt`.
+ *
+ * ## Example launch line
+ * |[
+ * gst-launch-1.0 dffcamerabin name=camera source="lenssweeptestsrc num-buffers=60" \
+ *     camera.depth ! depthcolorize ! videoconvert ! autovideosink \
+ *     camera.aif ! videoconvert ! autovideosink
+ * ]|
+ */
+#include "dffcamerabin.h"
+
+#include "aifcompose.h"
+#include "dffdepth.h"
+#include "forwarded_properties.h"
+
+#include <gst/dff/dff.h>
+#include <string>
+#include <vector>
+
+GST_DEBUG_CATEGORY_STATIC(dff_camera_bin_debug);
+#define GST_CAT_DEFAULT dff_camera_bin_debug
+
+namespace {
+
+enum Property : guint { PropertySource = 1, FIRST_FORWARDED };
+
+/* The parts of the graph. The bin owns the elements; one that is not installed is nullptr.
+ *
+ *   source ! mux ! stacks ! (depth_valve) ! dffdepth ! depths ! queue ! pad depth
+ *   stacks ! (stack_valve) ! queue ! aif.stack,  depths ! (aif_valve) ! queue ! aif.depth
+ *   aifcompose ! pictures ! queue ! pad aif
+ *   pictures ! queue ! videoconvert ! light.color,  depths ! queue ! light.depth,  light ! pad lightfield
+ *
+ * A valve is shut while nobody wants what lies behind it. The tees let the other branches go on when a pad is
+ * not linked. */
+struct State {
+    std::string source_text = "lenssweeptestsrc";
+    std::string source_error;
+    std::string missing; /* an element that is not installed, or empty */
+    GstElement *source = nullptr;
+    GstElement *mux = nullptr;
+    GstElement *stacks = nullptr;
+    GstElement *depth_valve = nullptr;
+    GstElement *stack_valve = nullptr;
+    GstElement *aif_valve = nullptr;
+    GstElement *dffdepth = nullptr;
+    GstElement *depths = nullptr;
+    GstElement *aifcompose = nullptr;
+    GstElement *pictures = nullptr;
+    std::vector<GstElement *> light; /* what the pad lightfield needs */
+    GstPad *depth_pad = nullptr;
+    GstPad *aif_pad = nullptr;
+};
+
+} // namespace
+
+struct _GstDffCameraBin {
+    GstBin parent;
+    State *state;
+};
+
+G_DEFINE_FINAL_TYPE(GstDffCameraBin, gst_dff_camera_bin, GST_TYPE_BIN)
+GST_ELEMENT_REGISTER_DEFINE(dffcamerabin, "dffcamerabin", GST_RANK_NONE, GST_TYPE_DFF_CAMERA_BIN)
+
+static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
+    "depth", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw, format = (string) GRAY16_LE"));
+static GstStaticPadTemplate aif_template =
+    GST_STATIC_PAD_TEMPLATE("aif", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw"));
+static GstStaticPadTemplate lightfield_template =
+    GST_STATIC_PAD_TEMPLATE("lightfield", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS("video/x-raw"));
+
+static GstElement *add(GstDffCameraBin *self, const char *factory, const char *name)
+{
+    GstElement *element = gst_element_factory_make(factory, name);
+    if (element)
+        gst_bin_add(GST_BIN(self), element);
+    else
+        self->state->missing = factory;
+    return element;
+}
+
+/* Stacks are large: two are enough to keep both sides of a branch busy. */
+static GstElement *add_queue(GstDffCameraBin *self)
+{
+    GstElement *queue = add(self, "queue", nullptr);
+    if (queue)
+        g_object_set(queue, "max-size-buffers", 2, "max-size-bytes", 0, "max-size-time", guint64{0}, nullptr);
+    return queue;
+}
+
+static GstElement *add_tee(GstDffCameraBin *self, const char *name)
+{
+    GstElement *tee = add(self, "tee", name);
+    if (tee)
+        g_object_set(tee, "allow-not-linked", TRUE, nullptr);
+    return tee;
+}
+
+static GstElement *add_valve(GstDffCameraBin *self, const char *name)
+{
+    GstElement *valve = add(self, "valve", name);
+    if (valve)
+        g_object_set(valve, "drop", TRUE, nullptr);
+    return valve;
+}
+
+/* Opens and shuts the valves for what is linked. */
+static void set_valves(GstDffCameraBin *self)
+{
+    const State &state = *self->state;
+    const bool aif = gst_pad_is_linked(state.aif_pad) || !state.light.empty();
+    const bool depth = gst_pad_is_linked(state.depth_pad) || aif;
+    g_object_set(state.depth_valve, "drop", !depth, nullptr);
+    g_object_set(state.stack_valve, "drop", !aif, nullptr);
+    g_object_set(state.aif_valve, "drop", !aif, nullptr);
+}
+
+/* A pad of the bin behind a queue. The tee between them takes what comes while the pad is not linked. */
+static GstPad *add_output(GstDffCameraBin *self, GstStaticPadTemplate *static_template, GstElement *queue)
+{
+    GstElement *tee = add_tee(self, nullptr);
+    gst_element_link(queue, tee);
+    gst_element_sync_state_with_parent(tee);
+    g_autoptr(GstPadTemplate) pad_template = gst_static_pad_template_get(static_template);
+    g_autoptr(GstPad) target = gst_element_request_pad_simple(tee, "src_%u");
+    GstPad *pad = gst_ghost_pad_new_from_template(static_template->name_template, target, pad_template);
+    g_signal_connect_swapped(pad, "linked", G_CALLBACK(set_valves), self);
+    g_signal_connect_swapped(pad, "unlinked", G_CALLBACK(set_valves), self);
+    gst_pad_set_active(pad, GST_STATE(self) > GST_STATE_READY);
+    gst_element_add_pad(GST_ELEMENT(self), pad);
+    return pad;
+}
+
+static void build_graph(GstDffCameraBin *self)
+{
+    State &state = *self->state;
+    GstElement *stack_queue = add_queue(self), *aif_stack_queue = add_queue(self),
+               *aif_depth_queue = add_queue(self), *depth_queue = add_queue(self),
+               *aif_queue = add_queue(self);
+    state.mux = add(self, "focalstackmux", "mux");
+    state.stacks = add_tee(self, "stacks");
+    state.depth_valve = add_valve(self, "depth-valve");
+    state.stack_valve = add_valve(self, "stack-valve");
+    state.aif_valve = add_valve(self, "aif-valve");
+    state.dffdepth = add(self, "dffdepth", "dffdepth");
+    state.depths = add_tee(self, "depths");
+    state.aifcompose = add(self, "aifcompose", "aifcompose");
+    state.pictures = add_tee(self, "pictures");
+    if (!state.missing.empty())
+        return;
+
+    gst_element_link_many(state.stacks, state.depth_valve, stack_queue, state.dffdepth, state.depths,
+                          depth_queue, nullptr);
+    gst_element_link_many(state.stacks, state.stack_valve, aif_stack_queue, nullptr);
+    gst_element_link_many(state.depths, state.aif_valve, aif_depth_queue, nullptr);
+    gst_element_link_pads(aif_stack_queue, "src", state.aifcompose, "stack");
+    gst_element_link_pads(aif_depth_queue, "src", state.aifcompose, "depth");
+    gst_element_link_many(state.aifcompose, state.pictures, aif_queue, nullptr);
+    state.depth_pad = add_output(self, &depth_template, depth_queue);
+    state.aif_pad = add_output(self, &aif_template, aif_queue);
+}
+
+/* Whether a source gives stacks by itself. */
+static bool gives_stacks(GstPad *pad)
+{
+    g_autoptr(GstCaps) caps = gst_pad_query_caps(pad, nullptr);
+    g_autoptr(GstCaps) stacks = gst_caps_from_string(GST_FOCAL_STACK_CAPS_NAME);
+    return !gst_caps_is_any(caps) && gst_caps_can_intersect(caps, stacks);
+}
+
+static void link_source(GstDffCameraBin *self)
+{
+    State &state = *self->state;
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(state.source, "src");
+    if (!pad) {
+        state.source_error = "it has no source pad that is not linked";
+        return;
+    }
+    gst_element_unlink(state.mux, state.stacks);
+    const bool stacks = gives_stacks(pad);
+    if (!stacks)
+        gst_element_link(state.mux, state.stacks);
+    if (!gst_element_link(state.source, stacks ? state.stacks : state.mux))
+        state.source_error = "it gives neither frames nor focal stacks";
+    gst_element_set_locked_state(state.mux, stacks); /* a mux without input has nothing to do */
+}
+
+static void replace_source(GstDffCameraBin *self)
+{
+    State &state = *self->state;
+    if (!state.missing.empty())
+        return;
+    if (state.source) {
+        gst_element_set_state(state.source, GST_STATE_NULL);
+        gst_bin_remove(GST_BIN(self), state.source);
+        state.source = nullptr;
+    }
+    state.source_error.clear();
+    g_autoptr(GError) error = nullptr;
+    const std::string description = state.source_text + " ! identity"; /* so that it may end in caps */
+    GstElement *source = gst_parse_bin_from_description_full(description.c_str(), TRUE, nullptr,
+                                                             GST_PARSE_FLAG_FATAL_ERRORS, &error);
+    if (!source) {
+        state.source_error = error ? error->message : "it cannot be parsed";
+        return;
+    }
+    gst_object_set_name(GST_OBJECT(source), "source");
+    state.source = source;
+    gst_bin_add(GST_BIN(self), source);
+    link_source(self);
+}
+
+static GstStateChangeReturn change_state(GstElement *element, GstStateChange transition)
+{
+    auto *self = GST_DFF_CAMERA_BIN(element);
+    const State &state = *self->state;
+    if (transition == GST_STATE_CHANGE_NULL_TO_READY || transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+        if (!state.missing.empty()) {
+            GST_ELEMENT_ERROR(
+                self, CORE, MISSING_PLUGIN,
+                ("The element %s is missing: install the plug-in it belongs to", state.missing.c_str()),
+                (nullptr));
+            return GST_STATE_CHANGE_FAILURE;
+        }
+        if (!state.source_error.empty()) {
+            GST_ELEMENT_ERROR(
+                self, RESOURCE, SETTINGS,
+                ("source=\"%s\" cannot be used: %s", state.source_text.c_str(), state.source_error.c_str()),
+                (nullptr));
+            return GST_STATE_CHANGE_FAILURE;
+        }
+    }
+    return GST_ELEMENT_CLASS(gst_dff_camera_bin_parent_class)->change_state(element, transition);
+}
+
+static GstPad *request_new_pad(GstElement *element, GstPadTemplate *, const gchar *, const GstCaps *)
+{
+    auto *self = GST_DFF_CAMERA_BIN(element);
+    State &state = *self->state;
+    if (!state.light.empty() || !state.missing.empty()) {
+        GST_WARNING_OBJECT(self, "The pad lightfield is in use already, or elements are missing");
+        return nullptr;
+    }
+    GstElement *compose = add(self, "lightfieldcompose", "lightfield");
+    if (!compose) {
+        GST_ELEMENT_WARNING(self, CORE, MISSING_PLUGIN,
+                            ("The pad lightfield needs the element lightfieldcompose: install its plug-in"),
+                            (nullptr));
+        state.missing.clear();
+        return nullptr;
+    }
+    GstElement *colour_queue = add_queue(self), *depth_queue = add_queue(self), *queue = add_queue(self),
+               *convert = add(self, "videoconvert", nullptr);
+    state.light = {queue, compose, convert, colour_queue, depth_queue};
+    gst_element_link_many(state.pictures, colour_queue, convert, nullptr);
+    gst_element_link(state.depths, depth_queue);
+    gst_element_link_pads(convert, "src", compose, "color");
+    gst_element_link_pads(depth_queue, "src", compose, "depth");
+    gst_element_link(compose, queue);
+    GstPad *pad = add_output(self, &lightfield_template, queue);
+    for (GstElement *part : state.light)
+        gst_element_sync_state_with_parent(part);
+    set_valves(self);
+    return pad;
+}
+
+/* Takes an element out of the bin, and away from the tee before it. */
+static void remove(GstDffCameraBin *self, GstElement *element)
+{
+    g_autoptr(GstPad) sink = gst_element_get_static_pad(element, "sink");
+    g_autoptr(GstPad) before = sink ? gst_pad_get_peer(sink) : nullptr;
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_bin_remove(GST_BIN(self), element);
+    g_autoptr(GstElement) tee = before ? gst_pad_get_parent_element(before) : nullptr;
+    if (tee && (tee == self->state->pictures || tee == self->state->depths))
+        gst_element_release_request_pad(tee, before);
+}
+
+static void release_pad(GstElement *element, GstPad *pad)
+{
+    auto *self = GST_DFF_CAMERA_BIN(element);
+    State &state = *self->state;
+    g_autoptr(GstPad) target = gst_ghost_pad_get_target(GST_GHOST_PAD(pad));
+    g_autoptr(GstElement) last = gst_pad_get_parent_element(target);
+    gst_pad_set_active(pad, FALSE);
+    gst_element_remove_pad(element, pad);
+    remove(self, last);
+    for (GstElement *part : state.light)
+        remove(self, part);
+    state.light.clear();
+    set_valves(self);
+}
+
+static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
+{
+    auto *self = GST_DFF_CAMERA_BIN(object);
+    State &state = *self->state;
+    if (id != PropertySource) {
+        dff::set_forwarded_property({state.dffdepth, state.aifcompose}, value, spec);
+        return;
+    }
+    if (GST_STATE(self) > GST_STATE_READY) {
+        GST_WARNING_OBJECT(self, "source can be set in the states NULL and READY only");
+        return;
+    }
+    GST_OBJECT_LOCK(self);
+    state.source_text = g_value_get_string(value) ? g_value_get_string(value) : "";
+    GST_OBJECT_UNLOCK(self);
+    replace_source(self);
+}
+
+static void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
+{
+    auto *self = GST_DFF_CAMERA_BIN(object);
+    if (id != PropertySource) {
+        dff::get_forwarded_property({self->state->dffdepth, self->state->aifcompose}, value, spec);
+        return;
+    }
+    GST_OBJECT_LOCK(self);
+    g_value_set_string(value, self->state->source_text.c_str());
+    GST_OBJECT_UNLOCK(self);
+}
+
+static void finalize(GObject *object)
+{
+    delete GST_DFF_CAMERA_BIN(object)->state;
+    G_OBJECT_CLASS(gst_dff_camera_bin_parent_class)->finalize(object);
+}
+
+static void gst_dff_camera_bin_init(GstDffCameraBin *self)
+{
+    self->state = new State;
+    build_graph(self);
+    replace_source(self);
+}
+
+static void gst_dff_camera_bin_class_init(GstDffCameraBinClass *klass)
+{
+    auto *object_class = G_OBJECT_CLASS(klass);
+    auto *element_class = GST_ELEMENT_CLASS(klass);
+
+    GST_DEBUG_CATEGORY_INIT(dff_camera_bin_debug, "dffcamerabin", 0, "depth camera in one element");
+    object_class->set_property = set_property;
+    object_class->get_property = get_property;
+    object_class->finalize = finalize;
+    g_object_class_install_property(
+        object_class, PropertySource,
+        g_param_spec_string(
+            "source", "Source",
+            "What takes the planes: a bin description as in gst-launch-1.0 with one open source pad, of "
+            "frames with a GstFocusMeta or of focal stacks",
+            "lenssweeptestsrc",
+            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)));
+    dff::install_forwarded_properties(object_class, FIRST_FORWARDED,
+                                      {GST_TYPE_DFF_DEPTH, GST_TYPE_AIF_COMPOSE});
+
+    element_class->change_state = change_state;
+    element_class->request_new_pad = request_new_pad;
+    element_class->release_pad = release_pad;
+    for (GstStaticPadTemplate *pad_template : {&depth_template, &aif_template, &lightfield_template})
+        gst_element_class_add_static_pad_template(element_class, pad_template);
+    gst_element_class_set_static_metadata(element_class, "Depth camera", "Source/Video",
+                                          "Depth and all-in-focus pictures of a camera with a swept focus",
+                                          "the gst-plugins-dff authors");
+}
