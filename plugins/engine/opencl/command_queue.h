@@ -33,7 +33,13 @@ public:
     template <typename... Arguments>
     void run(cl::Kernel &kernel, const cl::NDRange &size, const Arguments &...arguments)
     {
-        cl_uint index = 0;
+        run_from(0, kernel, size, arguments...);
+    }
+
+    /* The same for a kernel whose arguments before `index` are set. */
+    template <typename... Arguments>
+    void run_from(cl_uint index, cl::Kernel &kernel, const cl::NDRange &size, const Arguments &...arguments)
+    {
         (kernel.setArg(index++, arguments), ...);
         enqueue(kernel, size, {group_width, 1, 1});
     }

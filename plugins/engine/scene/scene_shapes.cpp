@@ -91,9 +91,9 @@ double distance_of(const Solid &solid)
 /* A picture of things under one lamp, by following a line of sight for each pixel. */
 class ShapesView {
 public:
-    ShapesView(cv::Size size, uint64_t seed)
-        : focal_(1.1 * std::max(size.width, size.height * 4 / 3)),
-          center_((size.width - 1) / 2.0, horizon * size.height)
+    ShapesView(cv::Size size, uint64_t seed, const Viewpoint &from)
+        : focal_(shapes_focal_length(size)), center_((size.width - 1) / 2.0, horizon * size.height),
+          eye_(from.offset[0], from.offset[1], 0.0), lean_(eye_ * (1.0 - from.zero_parallax))
     {
         for (const Shape &shape : arrangement()) {
             /* The finest wave of the grain is two and a half pixels long. */
@@ -112,7 +112,7 @@ public:
 
     Sample look(double x, double y) const
     {
-        const Ray ray{{}, {(x - center_.x) / focal_, (y - center_.y) / focal_, 1.0}};
+        const Ray ray{eye_, cv::Vec3d((x - center_.x) / focal_, (y - center_.y) / focal_, 1.0) - lean_};
         Sample sample{{}, std::numeric_limits<double>::infinity(), 0};
         Hit first{};
         for (size_t i = 0; i < things_.size(); i++)
@@ -159,6 +159,8 @@ private:
 
     double focal_;
     cv::Point2d center_;
+    cv::Vec3d eye_;
+    cv::Vec3d lean_; /* of the lines of sight of a shifted camera, towards the plane of zero parallax */
     std::vector<Thing> things_;
 };
 
@@ -179,9 +181,14 @@ void for_each_row(int rows, const std::stop_token &stop, const std::function<voi
 
 } // namespace
 
-Scene make_shapes(cv::Size size, uint64_t seed, const std::stop_token &stop)
+double shapes_focal_length(cv::Size size)
 {
-    const ShapesView view(size, seed);
+    return 1.1 * std::max(size.width, size.height * 4 / 3);
+}
+
+Scene make_shapes(cv::Size size, uint64_t seed, const std::stop_token &stop, const Viewpoint &from)
+{
+    const ShapesView view(size, seed, from);
     Scene scene{cv::Mat3b(size), cv::Mat1f(size), {}};
     cv::Mat1b things(size);
     for_each_row(size.height, stop, [&](int y) {

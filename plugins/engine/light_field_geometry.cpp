@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/light_field_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace dff {
+
+namespace {
+
+glm::ivec2 view_size(const LightFieldParameters &parameters, glm::ivec2 output)
+{
+    switch (parameters.layout) {
+    case LightFieldLayout::Quilt:
+        return output / glm::ivec2(parameters.columns, parameters.rows);
+    case LightFieldLayout::Views:
+        return {output.x / static_cast<int>(parameters.columns), output.y};
+    default:
+        return output;
+    }
+}
+
+/* The middle of the picture that has this aspect. */
+glm::dvec2 crop(glm::dvec2 picture, double aspect)
+{
+    return {std::min(picture.x, picture.y * aspect), std::min(picture.y, picture.x / aspect)};
+}
+
+double aspect_of(const LightFieldParameters &parameters, glm::dvec2 picture, glm::dvec2 view)
+{
+    if (parameters.layout == LightFieldLayout::Lenticular || parameters.layout == LightFieldLayout::Elemental)
+        return view.x / view.y; /* the panel's pixels are square */
+    return parameters.view_aspect > 0.0 ? parameters.view_aspect : picture.x / picture.y;
+}
+
+double greatest_slope(const LightFieldParameters &parameters)
+{
+    if (parameters.layout != LightFieldLayout::Elemental)
+        return std::tan(parameters.view_cone / 2.0);
+    /* From the corner of a square lens's pixels to its middle; a hexagon's is nearer. */
+    return parameters.lenses.pitch * std::sqrt(0.5) / lens_gap(parameters);
+}
+
+} // namespace
+
+LightFieldGeometry::LightFieldGeometry(const LightFieldParameters &parameters, PictureSize picture,
+                                       PictureSize output)
+    : view(view_size(parameters, {output.width, output.height}))
+{
+    const glm::dvec2 whole(picture.width, picture.height);
+    const glm::dvec2 seen = crop(whole, aspect_of(parameters, whole, view));
+    const glm::dvec2 shrink = glm::min(glm::dvec2(1.0), glm::dvec2(view) / seen);
+    layers = glm::max(glm::ivec2(glm::round(whole * shrink)), glm::ivec2(1));
+
+    const glm::dvec2 seen_layers = seen * glm::dvec2(layers) / whole;
+    scale = seen_layers / glm::dvec2(view);
+    first = 0.5 * scale + 0.5 * (glm::dvec2(layers) - seen_layers) - 0.5;
+    range = parameters.depth_gain * seen_layers.x;
+    lowest = range * (parameters.zero_parallax - 1.0);
+    reach = greatest_slope(parameters);
+}
+
+double view_slope(unsigned view, unsigned views, double cone)
+{
+    return views > 1 ? std::tan(cone * (static_cast<double>(view) / (views - 1) - 0.5)) : 0.0;
+}
+
+glm::dmat2 to_lens_matrix(const LensArray &lenses)
+{
+    const double cosine = std::cos(lenses.rotation), sine = std::sin(lenses.rotation);
+    return glm::dmat2(cosine, -sine, sine, cosine) / lenses.pitch;
+}
+
+double lens_gap(const LightFieldParameters &parameters)
+{
+    const LensArray &lenses = parameters.lenses;
+    return lenses.gap > 0.0 ? lenses.gap : 0.5 * lenses.pitch / std::tan(parameters.view_cone / 2.0);
+}
+
+} // namespace dff

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/light_field_renderer.h"
+
+#include "engine/opencl/program.h"
+#include "optics/depth_scale.h"
+
+#include <glm/matrix.hpp>
+#include <limits>
+#include <vector>
+
+namespace dff {
+
+namespace {
+
+bool is_blue_first(PixelFormat format)
+{
+    return format == PixelFormat::Bgr || format == PixelFormat::Bgrx;
+}
+
+cl_int channels_of(PixelFormat format)
+{
+    return format == PixelFormat::Rgb || format == PixelFormat::Bgr ? 3 : 4;
+}
+
+cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
+{
+    switch (layout) {
+    case LightFieldLayout::Rgbd:
+        return Program(device, "light_field_rgbd").kernel("rgbd");
+    case LightFieldLayout::Lenticular:
+        return Program(device, "light_field_panel").kernel("lenticular");
+    case LightFieldLayout::Elemental:
+        return Program(device, "light_field_panel").kernel("elemental");
+    default:
+        return Program(device, "light_field_views").kernel("views");
+    }
+}
+
+/* The rows of a matrix, as elemental takes it. */
+cl_float4 rows_of(const glm::dmat2 &m)
+{
+    return {{static_cast<cl_float>(m[0][0]), static_cast<cl_float>(m[1][0]), static_cast<cl_float>(m[0][1]),
+             static_cast<cl_float>(m[1][1])}};
+}
+
+unsigned rows_of_views(const LightFieldParameters &parameters)
+{
+    return parameters.layout == LightFieldLayout::Quilt ? parameters.rows : 1;
+}
+
+std::vector<float> index_positions()
+{
+    std::vector<float> positions(DepthScale::max_pixel + 1);
+    for (size_t pixel = 0; pixel < positions.size(); pixel++)
+        positions[pixel] = (static_cast<float>(pixel) - 1.0F) / static_cast<float>(DepthScale::max_pixel - 1);
+    positions[DepthScale::no_value] = std::numeric_limits<float>::quiet_NaN();
+    return positions;
+}
+
+} // namespace
+
+LightFieldRenderer::LightFieldRenderer(std::shared_ptr<Device> device, const LightFieldShape &shape,
+                                       const LightFieldParameters &parameters)
+    : device_(std::move(device)), shape_(shape), parameters_(parameters),
+      geometry_(parameters, shape.picture, shape.output), queue_(device_),
+      positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float)))
+{
+    set_positions(index_positions());
+    set_parameters(parameters);
+}
+
+void LightFieldRenderer::set_positions(std::span<const float> positions)
+{
+    translate_errors(*device_, [&] {
+        queue_.commands().enqueueWriteBuffer(positions_, CL_TRUE, 0, positions.size_bytes(),
+                                             positions.data());
+    });
+}
+
+void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
+{
+    parameters_ = parameters;
+    geometry_ = LightFieldGeometry(parameters, shape_.picture, shape_.output);
+    translate_errors(*device_, [&] {
+        if (built_ != parameters.layout)
+            kernel_ = kernel_of(*device_, parameters.layout);
+        built_ = parameters.layout;
+        if (parameters.layout == LightFieldLayout::Rgbd)
+            return;
+        if (!layers_ || layers_->size() != geometry_.layers)
+            layers_.emplace(queue_, geometry_.layers);
+        const unsigned views = parameters.columns * rows_of_views(parameters);
+        std::vector<cl_float> slopes;
+        for (unsigned view = 0; view < views; view++)
+            slopes.push_back(static_cast<cl_float>(view_slope(view, views, parameters.view_cone)));
+        slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
+        queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),
+                                             slopes.data());
+    });
+}
+
+cl::Buffer LightFieldRenderer::wrap(std::span<const std::byte> memory, cl_mem_flags access) const
+{
+    const cl_mem_flags placement = device_->is_cpu() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    /* OpenCL has no buffers of const host memory; `access` keeps the promise. */
+    return {device_->context(), access | placement, memory.size(), const_cast<std::byte *>(memory.data())};
+}
+
+void LightFieldRenderer::render(const Rows &color, const Rows &depth, std::span<std::byte> output,
+                                size_t output_stride)
+{
+    translate_errors(*device_, [&] {
+        const ColorAndDepth pictures{wrap(color.memory, CL_MEM_READ_ONLY),
+                                     wrap(depth.memory, CL_MEM_READ_ONLY),
+                                     color.stride,
+                                     depth.stride,
+                                     channels_of(shape_.format),
+                                     shape_.picture};
+        const Output target{wrap(output, CL_MEM_READ_WRITE), output_stride};
+        if (parameters_.layout == LightFieldLayout::Rgbd) {
+            copy_rgbd(pictures, target);
+        } else {
+            layers_->run(pictures, positions_, geometry_);
+            trace(target);
+        }
+        if (!device_->is_cpu())
+            queue_.commands().enqueueReadBuffer(target.rows, CL_FALSE, 0, output.size(), output.data());
+        times_ = queue_.finish();
+    });
+}
+
+void LightFieldRenderer::trace(const Output &output)
+{
+    queue_.begin_stage("trace");
+    const cl_uint index = layers_->set_arguments(kernel_, geometry_, parameters_.fill);
+    if (parameters_.layout == LightFieldLayout::Lenticular)
+        trace_lenticular(index, output);
+    else if (parameters_.layout == LightFieldLayout::Elemental)
+        trace_elemental(index, output);
+    else
+        trace_views(index, output);
+}
+
+template <typename... Arguments>
+void LightFieldRenderer::run_trace(cl_uint index, const Output &output, const Arguments &...arguments)
+{
+    (kernel_.setArg(index++, arguments), ...);
+    queue_.run_from(index, kernel_, {shape_.output.width, shape_.output.height}, to_float2(geometry_.first),
+                    to_float2(geometry_.scale), output.rows, output.stride, channels_of(shape_.format),
+                    to_int2({shape_.output.width, shape_.output.height}));
+}
+
+void LightFieldRenderer::trace_views(cl_uint index, const Output &output)
+{
+    run_trace(index, output, slopes_, to_int2({parameters_.columns, rows_of_views(parameters_)}),
+              to_int2(geometry_.view));
+}
+
+void LightFieldRenderer::trace_lenticular(cl_uint index, const Output &output)
+{
+    const LenticularSheet &sheet = parameters_.sheet;
+    const bool descending = is_blue_first(shape_.format) != sheet.flip_subpixels;
+    run_trace(index, output, static_cast<cl_float>(sheet.pitch), static_cast<cl_float>(sheet.tilt),
+              static_cast<cl_float>(sheet.center), static_cast<cl_float>(parameters_.view_cone),
+              descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}},
+              cl_int4{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}});
+}
+
+void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
+{
+    const LensArray &lenses = parameters_.lenses;
+    const glm::dmat2 to_lens = to_lens_matrix(lenses);
+    const glm::dvec2 middle(shape_.output.width / 2.0, shape_.output.height / 2.0);
+    run_trace(index, output, to_float2(middle + lenses.center), rows_of(to_lens),
+              rows_of(glm::inverse(to_lens)), static_cast<cl_float>(lens_gap(parameters_)),
+              static_cast<cl_int>(lenses.grid == LensGrid::Hexagonal), static_cast<cl_int>(lenses.flip));
+}
+
+void LightFieldRenderer::copy_rgbd(const ColorAndDepth &pictures, const Output &output)
+{
+    queue_.begin_stage("copy");
+    queue_.run(kernel_, {shape_.output.width, shape_.output.height}, pictures.color, pictures.color_stride,
+               pictures.depth, pictures.depth_stride, positions_,
+               to_int2({shape_.picture.width, shape_.picture.height}),
+               static_cast<cl_int>(parameters_.invert_depth), output.rows, output.stride, pictures.channels);
+}
+
+} // namespace dff
