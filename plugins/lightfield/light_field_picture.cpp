@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "light_field_picture.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace dff {
+
+namespace {
+
+/* A frame mapped as long as this lives. */
+class MappedFrame {
+public:
+    MappedFrame(const GstVideoInfo &info, GstBuffer *buffer, GstMapFlags flags)
+    {
+        if (!gst_video_frame_map(&frame_, &info, buffer, flags))
+            throw std::runtime_error("A frame's memory does not hold what its caps say");
+    }
+    ~MappedFrame() { gst_video_frame_unmap(&frame_); }
+
+    MappedFrame(const MappedFrame &) = delete;
+    MappedFrame &operator=(const MappedFrame &) = delete;
+
+    size_t stride() const { return static_cast<size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame_, 0)); }
+
+    std::span<std::byte> memory() const
+    {
+        const auto row_bytes = static_cast<size_t>(GST_VIDEO_FRAME_WIDTH(&frame_)) *
+                               static_cast<size_t>(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, 0));
+        return {static_cast<std::byte *>(GST_VIDEO_FRAME_PLANE_DATA(&frame_, 0)),
+                stride() * static_cast<size_t>(GST_VIDEO_FRAME_HEIGHT(&frame_) - 1) + row_bytes};
+    }
+
+private:
+    GstVideoFrame frame_;
+};
+
+PixelFormat pixel_format(GstVideoFormat format)
+{
+    switch (format) {
+    case GST_VIDEO_FORMAT_RGB:
+        return PixelFormat::Rgb;
+    case GST_VIDEO_FORMAT_BGR:
+        return PixelFormat::Bgr;
+    case GST_VIDEO_FORMAT_BGRx:
+        return PixelFormat::Bgrx;
+    default: /* the pad template lets nothing else through */
+        return PixelFormat::Rgbx;
+    }
+}
+
+PictureSize size_of(const GstVideoInfo &info)
+{
+    return {static_cast<uint32_t>(GST_VIDEO_INFO_WIDTH(&info)),
+            static_cast<uint32_t>(GST_VIDEO_INFO_HEIGHT(&info))};
+}
+
+DepthUnit unit_of(GstDepthUnit unit)
+{
+    switch (unit) {
+    case GST_DEPTH_UNIT_DIOPTRE:
+        return DepthUnit::Dioptre;
+    case GST_DEPTH_UNIT_MILLIMETRE:
+        return DepthUnit::Millimetre;
+    case GST_DEPTH_UNIT_MICROMETRE:
+        return DepthUnit::Micrometre;
+    default:
+        return DepthUnit::Index;
+    }
+}
+
+} // namespace
+
+void LightFieldPicture::stop()
+{
+    renderer_.reset();
+    device_.reset();
+    pool_.stop();
+    color_ = depth_ = output_ = {};
+    next_picture_ = 0;
+}
+
+void LightFieldPicture::set_color(const GstVideoInfo &color)
+{
+    color_ = color;
+    renderer_.reset();
+    no_depth_.assign(static_cast<size_t>(size_of(color).width) * size_of(color).height, 0);
+}
+
+void LightFieldPicture::set_depth(const GstVideoInfo &depth, const GstDepthInfo &facts)
+{
+    depth_ = depth;
+    caps_facts_ = facts;
+}
+
+void LightFieldPicture::set_output(const GstVideoInfo &output)
+{
+    output_ = output;
+    renderer_.reset();
+    pool_.start(output);
+}
+
+void LightFieldPicture::set_settings(const LightFieldSettings &settings)
+{
+    settings_ = settings;
+    settings_changed_ = true;
+}
+
+LightFieldPlan LightFieldPicture::plan() const
+{
+    return {settings_, size_of(color_)};
+}
+
+void LightFieldPicture::ensure_renderer()
+{
+    if (renderer_ && !settings_changed_)
+        return;
+    LightFieldParameters parameters = plan().parameters;
+    if (settings_.zero_parallax_dioptre >= 0.0)
+        parameters.zero_parallax =
+            sweep_position(facts_, settings_.zero_parallax_dioptre).value_or(parameters.zero_parallax);
+    if (renderer_) {
+        renderer_->set_parameters(parameters);
+    } else {
+        const LightFieldShape shape{pixel_format(GST_VIDEO_INFO_FORMAT(&color_)), size_of(color_),
+                                    size_of(output_)};
+        translate_errors(
+            *device_, [&] { renderer_ = std::make_unique<LightFieldRenderer>(device_, shape, parameters); });
+        renderer_->set_positions(sweep_positions(facts_));
+    }
+    settings_changed_ = false;
+}
+
+void LightFieldPicture::read_facts(GstBuffer *depth)
+{
+    GstDepthInfo info = caps_facts_;
+    if (const GstDepthMeta *meta = gst_buffer_get_depth_meta(depth))
+        gst_depth_meta_get_depth(meta, &info);
+    DepthFacts facts{{unit_of(info.unit), info.scale, info.offset}, 0.0, 0.0};
+    if (info.near > info.far) { /* false for NAN */
+        facts.near = info.near;
+        facts.far = info.far;
+    }
+    if (facts == facts_)
+        return;
+    facts_ = facts;
+    settings_changed_ = true; /* dioptres of the plane of zero parallax lie elsewhere now */
+    if (renderer_)
+        renderer_->set_positions(sweep_positions(facts_));
+}
+
+void LightFieldPicture::check_depth_size() const
+{
+    if (size_of(depth_) == size_of(color_))
+        return;
+    g_autofree gchar *text = g_strdup_printf("The depth map is %dx%d, the colour picture %dx%d: scale the "
+                                             "depth with nearest-neighbour, or neither",
+                                             GST_VIDEO_INFO_WIDTH(&depth_), GST_VIDEO_INFO_HEIGHT(&depth_),
+                                             GST_VIDEO_INFO_WIDTH(&color_), GST_VIDEO_INFO_HEIGHT(&color_));
+    throw std::runtime_error(text);
+}
+
+void LightFieldPicture::render(GstBuffer *color, GstBuffer *depth, GstBuffer *picture)
+{
+    const MappedFrame colors(color_, color, GST_MAP_READ);
+    const MappedFrame output(output_, picture, GST_MAP_WRITE);
+    if (depth) {
+        const MappedFrame depths(depth_, depth, GST_MAP_READ);
+        renderer_->render({colors.memory(), colors.stride()}, {depths.memory(), depths.stride()},
+                          output.memory(), output.stride());
+        return;
+    }
+    renderer_->render({colors.memory(), colors.stride()},
+                      {std::as_bytes(std::span(no_depth_)), sizeof(guint16) * size_of(color_).width},
+                      output.memory(), output.stride());
+}
+
+GstBuffer *LightFieldPicture::compose(GstBuffer *color, GstBuffer *depth)
+{
+    if (depth) {
+        check_depth_size();
+        read_facts(depth);
+    }
+    ensure_renderer();
+    g_autoptr(GstBuffer) picture = pool_.acquire();
+    if (!picture)
+        throw std::runtime_error("There is no memory left for another picture");
+    render(color, depth, picture);
+    GST_BUFFER_PTS(picture) = GST_BUFFER_PTS(color);
+    GST_BUFFER_DURATION(picture) = GST_BUFFER_DURATION(color);
+    GST_BUFFER_OFFSET(picture) = next_picture_++;
+    if (const GstReferenceTimestampMeta *clock = gst_buffer_get_reference_timestamp_meta(color, nullptr))
+        gst_buffer_add_reference_timestamp_meta(picture, clock->reference, clock->timestamp, clock->duration);
+    return reinterpret_cast<GstBuffer *>(g_steal_pointer(&picture));
+}
+
+} // namespace dff

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/light_field_parameters.h"
+
+#include <optional>
+#include <string>
+
+namespace dff {
+
+/* What the user asks of lightfieldcompose. */
+struct LightFieldSettings {
+    LightFieldSettings() { parameters.columns = parameters.rows = 0; }
+
+    LightFieldParameters parameters;     /* but for what stands below; columns and rows of 0: by layout */
+    double view_cone = 0.0;              /* degrees; 0: the calibration's, else 40 */
+    double zero_parallax_dioptre = -1.0; /* below 0: zero_parallax of the parameters holds */
+    size_t preset = 0;                   /* of display_presets(), counted from 1; 0: none */
+    PictureSize quilt{0, 0};             /* the preset's, if there is one */
+    std::string calibration;             /* path of a file, or empty */
+};
+
+/* The parameters as they are meant, for pictures of this size. `lenticular` reads its calibration: throws
+ * std::runtime_error with a user's text. */
+struct LightFieldPlan {
+    LightFieldPlan(const LightFieldSettings &settings, PictureSize picture);
+
+    LightFieldParameters parameters;
+    PictureSize output;    /* the size that suits best */
+    bool any_size = false; /* other sizes of the output do, too */
+};
+
+} // namespace dff
