@@ -66,8 +66,8 @@ __kernel void elemental(LAYERS, float2 center, float4 to_lens, float4 to_panel, 
         return;
     const Layers layers = MAKE_LAYERS;
     const float2 p = (float2)(x + 0.5f, y + 0.5f) - center;
-    const float2 local = (float2)(dot(to_lens.xy, p), dot(to_lens.zw, p));
-    const float2 lens = hexagonal ? hexagonal_lens(local) : square_lens(local);
+    const float2 place = (float2)(dot(to_lens.xy, p), dot(to_lens.zw, p));
+    const float2 lens = hexagonal ? hexagonal_lens(place) : square_lens(place);
     const float2 c = (float2)(dot(to_panel.xy, lens), dot(to_panel.zw, lens));
     const float2 direction = (flip ? p - c : c - p) / gap;
     const float2 origin = first + scale * (c + center - 0.5f);

@@ -13,24 +13,29 @@
  * so on. A picture without depth comes out flat. Put a queue on every branch, and videoconvert before the
  * colour pad.
  *
- * A quilt for a Looking Glass Portrait; file-suffix is what players want at the end of its name:
+ * A quilt for a Looking Glass Portrait, at half its usual size; file-suffix is what players want at the end
+ * of its name:
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
  *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
  *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
- *     lightfieldcompose name=l preset=looking-glass-portrait ! videoconvert ! pngenc ! \
- *     filesink location=shapes_qs8x6a0.75.png
+ *     lightfieldcompose name=l preset=looking-glass-portrait ! video/x-raw,width=1680,height=1680 ! \
+ *     videoconvert ! pngenc ! filesink location=shapes_qs8x6a0.75.png
  * ]|
- * Stereo, of the true depth:
+ * Stereo, with what lies at three dioptres in the plane of the screen:
  * |[
- * gst-launch-1.0 lenssweeptestsrc name=camera num-buffers=6  camera.src ! queue ! videoconvert ! l.color \
- *     camera.depth ! queue ! l.depth  lightfieldcompose name=l layout=views columns=2 view-cone=10 ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
+ *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
+ *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
+ *     lightfieldcompose name=l layout=views columns=2 view-cone=12 \
+ *     zero-parallax-dioptre=3 ! fakesink
  * ]|
  * Elemental images for an array of lenses 15.5 pixels apart:
  * |[
- * gst-launch-1.0 lenssweeptestsrc name=camera num-buffers=6  camera.src ! queue ! videoconvert ! l.color \
- *     camera.depth ! queue ! l.depth  lightfieldcompose name=l layout=elemental pitch=15.5 grid=hex !
- * fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
+ *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
+ *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
+ *     lightfieldcompose name=l layout=elemental pitch=15.5 grid=hex ! fakesink
  * ]|
  */
 #include "lightfieldcompose.h"
@@ -284,12 +289,15 @@ static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggre
     if (!gst_video_info_from_caps(&info, caps))
         return FALSE;
     const dff::LightFieldPlan &plan = *state.plan;
-    if (GST_VIDEO_INFO_WIDTH(&info) < static_cast<gint>(plan.parameters.columns) ||
-        GST_VIDEO_INFO_HEIGHT(&info) < static_cast<gint>(plan.parameters.rows)) {
+    const dff::LightFieldParameters &wanted = plan.parameters;
+    const bool is_quilt = wanted.layout == dff::LightFieldLayout::Quilt;
+    const guint columns = is_quilt || wanted.layout == dff::LightFieldLayout::Views ? wanted.columns : 1;
+    const guint rows = is_quilt ? wanted.rows : 1;
+    if (GST_VIDEO_INFO_WIDTH(&info) < static_cast<gint>(columns) ||
+        GST_VIDEO_INFO_HEIGHT(&info) < static_cast<gint>(rows)) {
         GST_ELEMENT_ERROR(aggregator, STREAM, FORMAT,
                           ("%dx%d pixels are too few for %u columns and %u rows of views",
-                           GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info), plan.parameters.columns,
-                           plan.parameters.rows),
+                           GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info), columns, rows),
                           (nullptr));
         return FALSE;
     }

@@ -21,7 +21,7 @@ import tempfile
 
 STRINGS = pathlib.Path(__file__).parents[2] / 'pipelines/strings'
 SECONDS_EACH = 60
-OUR_CATEGORIES = ('lenssweep*', 'focalstack*', 'dff*', 'aif*', 'depth*')
+OUR_CATEGORIES = ('lenssweep*', 'focalstack*', 'dff*', 'aif*', 'depth*', 'lightfield*')
 COMPLAINT = re.compile(r'^WARNING:|^ERROR:| (WARN|ERROR) |-(CRITICAL|WARNING) \*\*|runtime error:|ERROR: AddressSanitizer',
                        re.MULTILINE)
 

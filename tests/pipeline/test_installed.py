@@ -58,7 +58,8 @@ class Installed(unittest.TestCase):
         self.assert_ten_distances(output, 'm')
 
     def test_every_plug_in_is_installed_and_loads(self):
-        for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose', 'dffcamerabin', 'depthcolorize', 'dffmetapay', 'depthexrenc'):
+        for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose', 'dffcamerabin', 'depthcolorize', 'dffmetapay', 'depthexrenc',
+                        'lightfieldcompose'):
             run('gst-inspect-1.0', element, env=self.environment)
 
 

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lightfield/display_calibration.h"
+
+#include <cmath>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <unistd.h>
+
+using dff::DisplayCalibration;
+
+namespace {
+
+std::string write(const std::string &ending, const std::string &text)
+{
+    std::string path = testing::TempDir() + "calibration." + std::to_string(getpid()) + "." + ending;
+    std::ofstream(path) << text;
+    return path;
+}
+
+std::string refusal_of(const std::string &path)
+{
+    try {
+        DisplayCalibration::load(path);
+    } catch (const std::runtime_error &error) {
+        return error.what();
+    }
+    return "";
+}
+
+/* As a display tells it. */
+const std::string display =
+    R"({"configVersion":"3.0","serial":"LKG-0","pitch":{"value":52.5},"slope":{"value":-7.2},"center":{"value":0.25},)"
+    R"("viewCone":{"value":35.0},"invView":{"value":1.0},"verticalAngle":{"value":0.0},"DPI":{"value":324.0},)"
+    R"("screenW":{"value":1536.0},"screenH":{"value":2048.0},"flipImageX":{"value":0.0},"flipImageY":{"value":0.0},)"
+    R"("flipSubp":{"value":0.0}})";
+
+} // namespace
+
+TEST(Calibration, reads_what_displays_tell_of_themselves)
+{
+    const DisplayCalibration calibration = DisplayCalibration::load(write("json", display));
+    EXPECT_EQ(calibration.panel, (dff::PictureSize{1536, 2048}));
+    EXPECT_NEAR(calibration.view_cone, 35.0 / 180.0 * M_PI, 1e-12);
+    EXPECT_NEAR(calibration.sheet.pitch, 52.5 * 1536 / 324 * std::cos(std::atan(1 / -7.2)), 1e-9);
+    EXPECT_NEAR(calibration.sheet.tilt, 2048.0 / (1536 * -7.2), 1e-12);
+    EXPECT_EQ(calibration.sheet.center, 0.25);
+    EXPECT_TRUE(calibration.sheet.invert_view);
+    EXPECT_FALSE(calibration.sheet.flip_x);
+}
+
+TEST(Calibration, reads_yaml_with_plain_numbers)
+{
+    const DisplayCalibration calibration = DisplayCalibration::load(
+        write("yaml", "%YAML:1.0\n---\npitch: 52.5\nslope: -7.2\ncenter: 0.25\nDPI: 324\nscreenW: 1536\n"
+                      "screenH: 2048\nflipImageX: 1\nflipSubp: 1\n"));
+    EXPECT_NEAR(calibration.sheet.tilt, 2048.0 / (1536 * 7.2), 1e-12) << "the lenses lean the other way";
+    EXPECT_TRUE(calibration.sheet.flip_x);
+    EXPECT_TRUE(calibration.sheet.flip_subpixels);
+    EXPECT_EQ(calibration.view_cone, 0.0);
+}
+
+TEST(Calibration, says_what_is_wrong_with_a_file)
+{
+    EXPECT_NE(refusal_of("/nonexistent.json").find("/nonexistent.json"), std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "{\"pitch\": 5,")).find("neither JSON nor YAML"), std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "")).find("display calibration"), std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "{\"screenW\": 1536, \"screenH\": 2048}")).find("\"slope\""),
+              std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "{\"screenW\": 0, \"screenH\": 2048}")).find("\"screenW\""),
+              std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "{\"screenW\": \"wide\", \"screenH\": 2048}")).find("\"screenW\""),
+              std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "[1, 2]")), "");
+}

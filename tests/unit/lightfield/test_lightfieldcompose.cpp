@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "test_pipeline.h"
+
+#include <gst/check/gstharness.h>
+#include <gtest/gtest.h>
+
+using dff::run;
+using dff::TestPipeline;
+
+namespace {
+
+/* Two pictures and depth maps into the element `l`, whose properties and what follows it come after this. */
+std::string scene(const std::string &format = "RGB", int depth_width = 96)
+{
+    return "videotestsrc num-buffers=2 ! video/x-raw,framerate=26/1,width=96,height=64,format=" + format +
+           " ! queue ! l.color  videotestsrc num-buffers=2 pattern=gradient ! "
+           "video/x-raw,framerate=26/1,height=64,format=GRAY16_LE,width=" +
+           std::to_string(depth_width) + " ! queue ! l.depth  lightfieldcompose name=l ";
+}
+
+GstVideoInfo info_of(GstSample *sample)
+{
+    GstVideoInfo info;
+    gst_video_info_from_caps(&info, gst_sample_get_caps(sample));
+    return info;
+}
+
+/* The element alone, with both pads fed by hand: colour by a harness, depth by a pad that is linked before
+ * the harness starts the element. */
+class Harness {
+public:
+    Harness() : element_((gst_init(nullptr, nullptr), gst_element_factory_make("lightfieldcompose", nullptr)))
+    {
+        gst_util_set_object_arg(G_OBJECT(element_), "layout", "views");
+        depth_ = gst_pad_new("depth", GST_PAD_SRC);
+        gst_pad_set_active(depth_, TRUE);
+        g_autoptr(GstPad) sink = gst_element_get_static_pad(element_, "depth");
+        gst_pad_link(depth_, sink);
+        color_ = gst_harness_new_with_element(element_, "color", "src");
+        gst_harness_set_src_caps_str(color_, "video/x-raw,format=RGB,width=32,height=16,framerate=10/1");
+        g_autoptr(GstCaps) caps =
+            gst_caps_from_string("video/x-raw,format=GRAY16_LE,width=32,height=16,framerate=10/1");
+        GstSegment segment;
+        gst_segment_init(&segment, GST_FORMAT_TIME);
+        gst_pad_push_event(depth_, gst_event_new_stream_start("depth"));
+        gst_pad_push_event(depth_, gst_event_new_caps(caps));
+        gst_pad_push_event(depth_, gst_event_new_segment(&segment));
+    }
+
+    ~Harness()
+    {
+        gst_harness_teardown(color_);
+        gst_pad_set_active(depth_, FALSE);
+        gst_object_unref(depth_);
+        gst_object_unref(element_);
+    }
+
+    Harness(const Harness &) = delete;
+    Harness &operator=(const Harness &) = delete;
+
+    GstElement *element() const { return element_; }
+    GstHarness *color() const { return color_; }
+
+    void push_color(GstClockTime pts, guint8 value = 0) const
+    {
+        gst_harness_push(color_, make_buffer(32 * 3 * 16, pts, value));
+    }
+
+    void push_depth(GstClockTime pts) const { gst_pad_push(depth_, make_buffer(32 * 2 * 16, pts, 1)); }
+    void end_of_depth() const { gst_pad_push_event(depth_, gst_event_new_eos()); }
+
+    guint64 count(const char *field) const
+    {
+        GstStructure *stats = nullptr;
+        guint64 value = 0;
+        g_object_get(element_, "stats", &stats, nullptr);
+        gst_structure_get_uint64(stats, field, &value);
+        gst_structure_free(stats);
+        return value;
+    }
+
+private:
+    static GstBuffer *make_buffer(gsize size, GstClockTime pts, guint8 value)
+    {
+        GstBuffer *buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
+        gst_buffer_memset(buffer, 0, value, size);
+        GST_BUFFER_PTS(buffer) = pts;
+        if (GST_CLOCK_TIME_IS_VALID(pts))
+            GST_BUFFER_DURATION(buffer) = GST_SECOND / 10;
+        return buffer;
+    }
+
+    GstElement *element_;
+    GstPad *depth_;
+    GstHarness *color_;
+};
+
+} // namespace
+
+TEST(LightFieldCompose, every_layout_has_its_size)
+{
+    const std::vector<std::tuple<std::string, int, int>> layouts{
+        {"layout=quilt", 8 * 96, 6 * 64},
+        {"layout=quilt columns=3 rows=2 view-aspect=1", 3 * 64, 2 * 64},
+        {"preset=looking-glass-portrait ! video/x-raw,width=400,height=300", 400, 300},
+        {"preset=looking-glass-portrait", 3360, 3360},
+        {"layout=rgbd", 2 * 96, 64},
+        {"layout=views", 2 * 96, 64},
+        {"layout=views columns=5", 5 * 96, 64},
+        {"layout=elemental", 96, 64},
+        {"layout=elemental grid=hex rotation=20 ! video/x-raw,width=200,height=100", 200, 100},
+    };
+    for (const auto &[layout, width, height] : layouts) {
+        TestPipeline pipeline(scene() + layout + " ! appsink name=out sync=false");
+        pipeline.play();
+        g_autoptr(GstSample) sample = pipeline.pull("out");
+        ASSERT_NE(sample, nullptr) << layout;
+        const GstVideoInfo info = info_of(sample);
+        EXPECT_EQ(GST_VIDEO_INFO_WIDTH(&info), width) << layout;
+        EXPECT_EQ(GST_VIDEO_INFO_HEIGHT(&info), height) << layout;
+    }
+}
+
+TEST(LightFieldCompose, every_format_runs)
+{
+    for (const char *format : {"RGBx", "BGRx", "RGB", "BGR"}) {
+        const dff::Outcome outcome =
+            run(scene(format) + "layout=views ! video/x-raw,format=" + format + " ! fakesink");
+        EXPECT_TRUE(outcome.end_of_stream) << format << outcome.error;
+    }
+}
+
+TEST(LightFieldCompose, the_suffix_tells_players_the_layout_of_the_quilt)
+{
+    TestPipeline pipeline(scene() +
+                          "preset=looking-glass-portrait ! video/x-raw,width=480,height=480 ! appsink "
+                          "name=out sync=false");
+    pipeline.play();
+    g_autoptr(GstSample) sample = pipeline.pull("out");
+    g_autofree gchar *suffix = nullptr;
+    g_object_get(pipeline.element("l"), "file-suffix", &suffix, nullptr);
+    EXPECT_STREQ(suffix, "_qs8x6a0.75");
+}
+
+TEST(LightFieldCompose, pictures_go_with_the_depth_of_their_time)
+{
+    const Harness harness;
+    /* A pad holds one buffer at a time, so that the order matters. */
+    harness.push_depth(0);
+    harness.push_color(0);
+    harness.push_depth(GST_SECOND / 10); /* its picture was lost */
+    harness.push_color(2 * GST_SECOND / 10);
+    harness.push_depth(2 * GST_SECOND / 10);
+    for (const GstClockTime pts : {GstClockTime{0}, GstClockTime{2 * GST_SECOND / 10}}) {
+        g_autoptr(GstBuffer) picture = gst_harness_pull(harness.color());
+        EXPECT_EQ(GST_BUFFER_PTS(picture), pts);
+    }
+    EXPECT_EQ(harness.count("without-depth"), 0u);
+}
+
+TEST(LightFieldCompose, a_picture_whose_depth_was_lost_comes_out_flat)
+{
+    const Harness harness;
+    harness.push_color(0, 77);
+    harness.push_depth(GST_SECOND / 10);
+    g_autoptr(GstBuffer) flat = gst_harness_pull(harness.color());
+    EXPECT_EQ(GST_BUFFER_PTS(flat), 0u);
+    EXPECT_EQ(harness.count("without-depth"), 1u);
+    GstMapInfo map;
+    gst_buffer_map(flat, &map, GST_MAP_READ);
+    EXPECT_EQ(map.data[0], 77);
+    gst_buffer_unmap(flat, &map);
+}
+
+TEST(LightFieldCompose, without_timestamps_the_kth_goes_with_the_kth)
+{
+    const Harness harness;
+    for (int k = 0; k < 3; k++) {
+        harness.push_color(GST_CLOCK_TIME_NONE);
+        harness.push_depth(GST_CLOCK_TIME_NONE);
+        gst_buffer_unref(gst_harness_pull(harness.color()));
+    }
+    EXPECT_EQ(harness.count("pictures"), 3u);
+    EXPECT_EQ(harness.count("without-depth"), 0u);
+}
+
+TEST(LightFieldCompose, pictures_go_on_when_the_depth_has_ended)
+{
+    const Harness harness;
+    harness.push_color(0);
+    harness.end_of_depth();
+    gst_buffer_unref(gst_harness_pull(harness.color()));
+    EXPECT_EQ(harness.count("without-depth"), 1u);
+}
+
+TEST(LightFieldCompose, properties_change_while_it_runs)
+{
+    const Harness harness;
+    harness.push_color(0);
+    harness.push_depth(0);
+    gst_buffer_unref(gst_harness_pull(harness.color()));
+    g_object_set(harness.element(), "columns", 3, "depth-gain", 0.5, "view-cone", 20.0, nullptr);
+    harness.push_color(GST_SECOND / 10);
+    harness.push_depth(GST_SECOND / 10);
+    g_autoptr(GstBuffer) wider = gst_harness_pull(harness.color());
+    EXPECT_EQ(gst_buffer_get_size(wider), 3u * 32 * 3 * 16);
+}
+
+TEST(LightFieldCompose, a_pad_that_is_not_linked_is_an_error_and_no_hang)
+{
+    const dff::Outcome outcome =
+        run("videotestsrc num-buffers=1 ! videoconvert ! l.color lightfieldcompose name=l ! fakesink", 10);
+    EXPECT_NE(outcome.error.find("\"depth\""), std::string::npos) << outcome.error;
+}
+
+TEST(LightFieldCompose, depth_of_another_size_is_an_error_that_names_both)
+{
+    const dff::Outcome outcome = run(scene("RGB", 48) + " ! fakesink");
+    EXPECT_NE(outcome.error.find("48x64"), std::string::npos) << outcome.error;
+    EXPECT_NE(outcome.error.find("96x64"), std::string::npos) << outcome.error;
+}
+
+TEST(LightFieldCompose, a_panel_without_its_calibration_is_an_error_that_says_what_to_do)
+{
+    const dff::Outcome none = run(scene() + "layout=lenticular ! fakesink");
+    EXPECT_NE(none.error.find("display-calibration"), std::string::npos) << none.error;
+    const dff::Outcome missing =
+        run(scene() + "layout=lenticular display-calibration=/nonexistent.json ! fakesink");
+    EXPECT_NE(missing.error.find("/nonexistent.json"), std::string::npos) << missing.error;
+}
+
+TEST(LightFieldCompose, a_quilt_with_fewer_pixels_than_views_is_an_error)
+{
+    const dff::Outcome outcome = run(scene() + "layout=quilt ! video/x-raw,width=7,height=7 ! fakesink");
+    EXPECT_NE(outcome.error.find("7x7"), std::string::npos) << outcome.error;
+}
