@@ -59,12 +59,6 @@ __kernel void median_5x5(__global const short *u, __global float *median, int wi
     mirror_ends(out, width);
 }
 
-INLINE int any_of(int8 truth)
-{
-    const long4 parts = as_long4(truth);
-    return (parts.s0 | parts.s1 | parts.s2 | parts.s3) != 0;
-}
-
 /* nearer = min_3x3(u), guide[colour] = A before the bilateral filter, which goes to `silent_guide` where there will be
  * none. All sides are mirrored, before and after. Work-items (1, low height). */
 __kernel void blend_planes(__global const short *small, __global const float *u, __global const Noise *noise,

@@ -16,15 +16,32 @@
 #if SCALE == 2
 #define EDGE 2
 typedef float4 lanes;
-#define LOAD_LANES(p) vload4(0, p)
+typedef float2 pixels;
+typedef uchar2 __attribute__((aligned(1))) bytes_anywhere;
+typedef ushort2 __attribute__((aligned(2))) codes_anywhere;
+#define CONVERT_PIXELS convert_float2
+#define LOAD_PIXELS(p) vload2(0, p)
 #define STORE_LANES(v, p) vstore4(v, 0, p)
+#define CONVERT_CODES(v) convert_ushort2(convert_int2(v))
+#define JOIN(rows) (lanes)(rows[0], rows[1])
+#define DOUBLE(v) (lanes)(v[0])
 #else
 #define EDGE 4
 typedef float16 lanes;
-#define LOAD_LANES(p) vload16(0, p)
+typedef float4 pixels;
+typedef uchar4 __attribute__((aligned(1))) bytes_anywhere;
+typedef ushort4 __attribute__((aligned(2))) codes_anywhere;
+#define CONVERT_PIXELS convert_float4
+#define LOAD_PIXELS(p) vload4(0, p)
 #define STORE_LANES(v, p) vstore16(v, 0, p)
+#define CONVERT_CODES(v) convert_ushort4(convert_int4(v))
+#define JOIN(rows) (lanes)(rows[0], rows[1], rows[2], rows[3])
+#define DOUBLE(v)                                                                                                      \
+    (lanes)(v[0], v[0], v[1], v[1], v[0], v[0], v[1], v[1], v[2], v[2], v[3], v[3], v[2], v[2], v[3], v[3])
 #endif
 #define LANES (EDGE * EDGE)
+typedef uint __attribute__((aligned(2))) uint_anywhere;
+typedef int16 __attribute__((aligned(2))) ints_anywhere;
 
 #define PARTS (SCALE * SCALE / LANES)
 
@@ -34,125 +51,257 @@ typedef float16 lanes;
 typedef struct {
     __global const uchar *stack;
     __global const ulong2 *table;
-    int4 channels; /* interleaved: bytes a pixel, index of R, G, B; NV12 and I420: step and index of U, of V */
+    int4 channels; /* see colour_channels() in luma.h */
     int planes;
     int width;
     int height;
 } Stack;
 
-/* Adds the pixels of a part, weighted, to three colours, which colours_of() makes R, G, B. */
-INLINE void add_pixels(const Stack *stack, int z, int left, int top, float weight, float *red, float *green,
-                       float *blue)
-{
-    const ulong2 rows = stack->table[z];
-    UNROLL
-    for (int j = 0; j < EDGE; j++) {
-        const int y = clamp(top + j, 0, stack->height - 1);
-        __global const uchar *row = stack->stack + rows.x + rows.y * (ulong)y;
-#ifdef CHROMA
-        const ulong2 u_rows = stack->table[stack->planes + z], v_rows = stack->table[V_COMPONENT * stack->planes + z];
-        __global const uchar *u_row = stack->stack + u_rows.x + u_rows.y * (ulong)(y / 2);
-        __global const uchar *v_row = stack->stack + v_rows.x + v_rows.y * (ulong)(y / 2);
-#endif
-        UNROLL
-        for (int i = 0; i < EDGE; i++) {
-            const int x = clamp(left + i, 0, stack->width - 1), lane = j * EDGE + i;
-#if defined(INTERLEAVED)
-            __global const uchar *pixel = row + x * stack->channels.s0;
-            red[lane] += weight * pixel[stack->channels.s1];
-            green[lane] += weight * pixel[stack->channels.s2];
-            blue[lane] += weight * pixel[stack->channels.s3];
-#else
-            red[lane] += weight * luma_at(row, (ulong2)(0), x, 0);
-#if defined(CHROMA)
-            green[lane] += weight * u_row[x / 2 * stack->channels.s0 + stack->channels.s1];
-            blue[lane] += weight * v_row[x / 2 * stack->channels.s2 + stack->channels.s3];
-#endif
-#endif
-        }
-    }
-}
-
-/* As colours_of_yuv of small_planes.cl. */
-INLINE void colours_of(lanes *red, lanes *green, lanes *blue)
-{
-#if defined(CHROMA)
-    const lanes y = *red, u = *green - 128.0f, v = *blue - 128.0f;
-    *red = y + 1.402f * v;
-    *green = y - 0.344f * u - 0.714f * v;
-    *blue = y + 1.772f * u;
-#elif !defined(INTERLEAVED)
-    *green = *blue = *red;
-#endif
-}
-
-/* Depth pixels of positions u: see depth_code.cl. */
-INLINE void write_depth(__global ushort *depth, const float *u, __global const ushort *codes, int is_linear, int left,
-                        int top, int planes, int width, int height)
-{
-    const lanes share = clamp(LOAD_LANES(u) * (1.0f / (planes - 1)), 0.0f, 1.0f);
-    float numbers[LANES];
-    STORE_LANES(share * 65534.0f + 1.5f, numbers);
-    for (int j = max(-top, 0); j < min(EDGE, height - top); j++)
-        for (int i = max(-left, 0); i < min(EDGE, width - left); i++) {
-            const ushort number = (ushort)(int)numbers[j * EDGE + i];
-            depth[(size_t)(top + j) * width + left + i] = is_linear ? number : codes[number];
-        }
-}
-
-/* Where the pixels of each part lie between the cells, in low cells, and their nearness to each of the 4x4. */
 typedef struct {
-    lanes across[PARTS];
-    lanes down[PARTS];
+    lanes red, green, blue;
+} Colours;
+
+#if defined(CHROMA)
+/* As small_planes.cl. */
+INLINE void to_rgb(Colours *colours)
+{
+    const lanes y = colours->red, u = colours->green - 128.0f, v = colours->blue - 128.0f;
+    colours->red = y + (45.0f / 32) * v;
+    colours->green = y - (11.0f / 32) * u - (23.0f / 32) * v;
+    colours->blue = y + (57.0f / 32) * u;
+}
+#endif
+
+/* Weighs the planes of G at the position u: from first to last, exp(-(z - u)^2 / (2 s^2)) each. */
+typedef struct {
+    int first, last;
+    float u, steepness;
+} Blend;
+
+INLINE Blend blend_at(float u, float t, int planes)
+{
+    const float s = 0.6f + 0.3f * t, reach = 2.5f * s;
+    const Blend blend = {max((int)ceil(u - reach), 0), min((int)(u + reach), planes - 1), u, -1.0f / (2.0f * s * s)};
+    return blend;
+}
+
+INLINE float plane_weight(const Blend *blend, int z)
+{
+    const float distance = z - blend->u;
+    return native_exp(blend->steepness * distance * distance);
+}
+
+/* G of a part that may lie partly outside. */
+INLINE Colours blend_any_part(const Stack *stack, const Blend *blend, int left, int top)
+{
+    float sums[3][LANES], weights = 0.0f;
+    for (int lane = 0; lane < LANES; lane++)
+        sums[0][lane] = sums[1][lane] = sums[2][lane] = 0.0f;
+    for (int z = blend->first; z <= blend->last; z++) {
+        const float weight = plane_weight(blend, z);
+        const ulong2 rows = stack->table[z];
+        for (int lane = 0; lane < LANES; lane++) {
+            const int x = clamp(left + lane % EDGE, 0, stack->width - 1), y = clamp(top + lane / EDGE, 0, stack->height - 1);
+#if defined(INTERLEAVED)
+            __global const uchar *pixel = stack->stack + rows.x + rows.y * (ulong)y + x * CHANNELS;
+            sums[0][lane] += weight * pixel[stack->channels.s1];
+            sums[1][lane] += weight * pixel[stack->channels.s2];
+            sums[2][lane] += weight * pixel[stack->channels.s3];
+#else
+            sums[0][lane] += weight * luma_at(stack->stack, rows, x, y);
+#if defined(CHROMA)
+            const ulong2 u_rows = stack->table[stack->planes + z], v_rows = stack->table[V_COMPONENT * stack->planes + z];
+            sums[1][lane] += weight * stack->stack[u_rows.x + u_rows.y * (ulong)(y / 2) + x / 2 * stack->channels.s0 +
+                                                   stack->channels.s1];
+            sums[2][lane] += weight * stack->stack[v_rows.x + v_rows.y * (ulong)(y / 2) + x / 2 * stack->channels.s2 +
+                                                   stack->channels.s3];
+#endif
+#endif
+        }
+        weights += weight;
+    }
+    Colours colours;
+    lanes *colour[3] = {&colours.red, &colours.green, &colours.blue};
+    for (int i = 0; i < 3; i++) {
+        pixels rows[EDGE];
+        for (int j = 0; j < EDGE; j++)
+            rows[j] = LOAD_PIXELS(sums[i] + j * EDGE) / weights;
+        *colour[i] = JOIN(rows);
+    }
+#if defined(CHROMA)
+    to_rgb(&colours);
+#elif !defined(INTERLEAVED)
+    colours.green = colours.blue = colours.red;
+#endif
+    return colours;
+}
+
+#if LUMA_BYTES == 1
+#define READ_PIXELS(pointer) CONVERT_PIXELS(*(__global const bytes_anywhere *)(pointer))
+
+/* The same of a part inside. */
+INLINE Colours blend_part(const Stack *stack, const Blend *blend, int left, int top)
+{
+    pixels red[EDGE], green[EDGE], blue[EDGE];
+    float u[LANES / 4], v[LANES / 4], weights = 0.0f;
+    UNROLL
+    for (int j = 0; j < EDGE; j++)
+        red[j] = green[j] = blue[j] = 0.0f;
+    UNROLL
+    for (int i = 0; i < LANES / 4; i++)
+        u[i] = v[i] = 0.0f;
+    for (int z = blend->first; z <= blend->last; z++) {
+        const float weight = plane_weight(blend, z);
+        const ulong2 rows = stack->table[z];
+        weights += weight;
+        UNROLL
+        for (int j = 0; j < EDGE; j++) {
+            __global const uchar *row = stack->stack + rows.x + rows.y * (ulong)(top + j);
+#if defined(INTERLEAVED)
+#if EDGE == 4 && CHANNELS == 4
+            const uchar16 bytes = *(__global const lanes8 *)(row + 4 * left);
+            const uchar4 first = bytes.s048c, second = bytes.s159d, third = bytes.s26ae;
+#elif EDGE == 4
+            __global const bytes_anywhere *quads = (__global const bytes_anywhere *)(row + 3 * left);
+            const uchar4 a = quads[0], b = quads[1], c = quads[2];
+            const uchar4 first = (uchar4)(a.s03, b.s2, c.s1), second = (uchar4)(a.s1, b.s03, c.s2),
+                         third = (uchar4)(a.s2, b.s1, c.s03);
+#else
+            __global const uchar *pixel = row + CHANNELS * left;
+            const uchar2 first = (uchar2)(pixel[0], pixel[CHANNELS]), second = (uchar2)(pixel[1], pixel[CHANNELS + 1]),
+                         third = (uchar2)(pixel[2], pixel[CHANNELS + 2]);
+#endif
+            red[j] += weight * CONVERT_PIXELS(first);
+            green[j] += weight * CONVERT_PIXELS(second);
+            blue[j] += weight * CONVERT_PIXELS(third);
+#else
+            red[j] += weight * READ_PIXELS(row + left);
+#endif
+        }
+#if defined(CHROMA)
+        const ulong2 u_rows = stack->table[stack->planes + z], v_rows = stack->table[V_COMPONENT * stack->planes + z];
+        UNROLL
+        for (int i = 0; i < LANES / 4; i++) {
+            const int x = left / 2 + i % (EDGE / 2), y = top / 2 + i / (EDGE / 2);
+            u[i] += weight *
+                    stack->stack[u_rows.x + u_rows.y * (ulong)y + x * stack->channels.s0 + stack->channels.s1];
+            v[i] += weight *
+                    stack->stack[v_rows.x + v_rows.y * (ulong)y + x * stack->channels.s2 + stack->channels.s3];
+        }
+#endif
+    }
+    const float scale = 1.0f / weights;
+    Colours colours;
+#if defined(INTERLEAVED)
+    const int blue_first = stack->channels.s1 == 2;
+    const lanes first = JOIN(red) * scale, third = JOIN(blue) * scale;
+    colours.red = blue_first ? third : first;
+    colours.green = JOIN(green) * scale;
+    colours.blue = blue_first ? first : third;
+#else
+    colours.red = colours.green = colours.blue = JOIN(red) * scale;
+#if defined(CHROMA)
+    colours.green = DOUBLE(u) * scale;
+    colours.blue = DOUBLE(v) * scale;
+    to_rgb(&colours);
+#endif
+#endif
+    return colours;
+}
+#else
+#define blend_part blend_any_part
+#endif
+
+/* The pixels of a part in the order of lanes, how near they are to each of the 4x4 cells. */
+typedef struct {
     lanes nearness[PARTS][16];
 } Places;
 
 INLINE void find_places(Places *places)
 {
-    for (int part = 0; part < PARTS; part++) {
-        float across[LANES], down[LANES], nearness[LANES];
-        for (int lane = 0; lane < LANES; lane++) {
-            across[lane] = (part % (SCALE / EDGE) * EDGE + lane % EDGE + 0.5f) / SCALE;
-            down[lane] = (part / (SCALE / EDGE) * EDGE + lane / EDGE + 0.5f) / SCALE;
+    float nearness[SCALE][4];
+    for (int i = 0; i < SCALE; i++)
+        for (int k = 0; k < 4; k++) {
+            const float distance = (i + 0.5f) / SCALE - (k - 1.0f);
+            nearness[i][k] = native_exp(distance * distance * (-1.0f / 4.5f));
         }
-        places->across[part] = LOAD_LANES(across);
-        places->down[part] = LOAD_LANES(down);
-        UNROLL
+    for (int part = 0; part < PARTS; part++)
         for (int k = 0; k < 16; k++) {
-            for (int lane = 0; lane < LANES; lane++) {
-                const float dx = across[lane] - (k % 4 - 1.0f), dy = down[lane] - (k / 4 - 1.0f);
-                nearness[lane] = native_exp((dx * dx + dy * dy) * (-1.0f / 4.5f));
+            const int right = part % (SCALE / EDGE) * EDGE, down = part / (SCALE / EDGE) * EDGE;
+            pixels rows[EDGE];
+            for (int j = 0; j < EDGE; j++) {
+                float row[EDGE];
+                for (int i = 0; i < EDGE; i++)
+                    row[i] = nearness[right + i][k % 4] * nearness[down + j][k / 4];
+                rows[j] = LOAD_PIXELS(row);
             }
-            places->nearness[part][k] = LOAD_LANES(nearness);
+            places->nearness[part][k] = JOIN(rows);
         }
+}
+
+/* The numbers of depth_code.cl of positions u. */
+#define NUMBER(u, planes) (clamp((u) * (1.0f / ((planes) - 1)), 0.0f, 1.0f) * 65534.0f + 1.5f)
+
+/* Numbers of the pixels between two rows of cells, bilinear: 8 squares at a time, from the one whose upper left cell is
+ * low_x. Pixels outside are left out. */
+INLINE void write_bilinear(__global const float *upper, __global const float *lower, __global ushort *depth, int low_x,
+                           int top, int planes, int width, int height)
+{
+    const float8 upper_left = READ_CELLS(upper + low_x), upper_right = READ_CELLS(upper + low_x + 1);
+    const float8 lower_left = READ_CELLS(lower + low_x), lower_right = READ_CELLS(lower + low_x + 1);
+    const int left = low_x * SCALE + SCALE / 2, is_inside = left >= 0 && left + 8 * SCALE <= width;
+    for (int j = max(-top, 0); j < min(SCALE, height - top); j++) {
+        const float down = (j + 0.5f) / SCALE;
+        const float8 start = upper_left + down * (lower_left - upper_left);
+        const float8 end = upper_right + down * (lower_right - upper_right);
+        __global ushort *row = depth + (size_t)(top + j) * width;
+        int8 numbers[SCALE];
+        UNROLL
+        for (int i = 0; i < SCALE; i++)
+            numbers[i] = convert_int8(NUMBER(start + (i + 0.5f) / SCALE * (end - start), planes));
+        if (is_inside) {
+            /* Two pixels a 32-bit lane, then pairs side by side. */
+#if SCALE == 2
+            *(__global lanes16 *)(row + left) = as_ushort16(numbers[0] | numbers[1] << 16);
+#else
+            UNROLL
+            for (int i = 0; i < SCALE; i += 4) {
+                const int8 first = numbers[i] | numbers[i + 1] << 16, second = numbers[i + 2] | numbers[i + 3] << 16;
+#if SCALE == 4
+                *(__global ints_anywhere *)(row + left) =
+                    (int16)(first.s0, second.s0, first.s1, second.s1, first.s2, second.s2, first.s3, second.s3, first.s4,
+                            second.s4, first.s5, second.s5, first.s6, second.s6, first.s7, second.s7);
+#else
+                const int *lower_pairs = (const int *)&first, *higher_pairs = (const int *)&second;
+                for (int k = 0; k < 8; k++) {
+                    *(__global uint_anywhere *)(row + left + 8 * k + i) = (uint)lower_pairs[k];
+                    *(__global uint_anywhere *)(row + left + 8 * k + i + 2) = (uint)higher_pairs[k];
+                }
+#endif
+            }
+#endif
+            continue;
+        }
+        for (int k = 0; k < 8; k++)
+            for (int i = 0; i < SCALE; i++) {
+                const int x = left + k * SCALE + i;
+                if (x >= 0 && x < width)
+                    row[x] = (ushort)((const int *)&numbers[i])[k];
+            }
     }
 }
 
-INLINE float spread(const float *cells)
+/* Which of 8 squares have cells around them that differ in depth. rows: of the 4 rows of cells. */
+INLINE int8 are_edges(__global const float *u, const size_t *rows, int low_x)
 {
-    const float16 all = vload16(0, cells);
-    const float8 low8 = min(all.lo, all.hi), high8 = max(all.lo, all.hi);
-    const float4 low4 = min(low8.lo, low8.hi), high4 = max(high8.lo, high8.hi);
-    const float2 low2 = min(low4.lo, low4.hi), high2 = max(high4.lo, high4.hi);
-    return max(high2.x, high2.y) - min(low2.x, low2.y);
-}
-
-/* G of a part: the planes blended at the position `u`. */
-INLINE void blend_part(const Stack *stack, float u, float t, int left, int top, lanes *red, lanes *green, lanes *blue)
-{
-    const float s = 0.6f + 0.3f * t, reach = 2.5f * s;
-    float sums[3][LANES], weights = 0.0f;
-    for (int lane = 0; lane < LANES; lane++)
-        sums[0][lane] = sums[1][lane] = sums[2][lane] = 0.0f;
-    for (int z = max((int)ceil(u - reach), 0); z <= min((int)(u + reach), stack->planes - 1); z++) {
-        const float weight = native_exp((z - u) * (z - u) * (-1.0f / (2.0f * s * s)));
-        add_pixels(stack, z, left, top, weight, sums[0], sums[1], sums[2]);
-        weights += weight;
+    float8 least = INFINITY, most = -INFINITY;
+    UNROLL
+    for (int k = 0; k < 16; k++) {
+        const float8 cells = READ_CELLS(u + rows[k / 4] + low_x - 1 + k % 4);
+        least = min(least, cells);
+        most = max(most, cells);
     }
-    *red = LOAD_LANES(sums[0]) / weights;
-    *green = LOAD_LANES(sums[1]) / weights;
-    *blue = LOAD_LANES(sums[2]) / weights;
-    colours_of(red, green, blue);
+    return most - least >= SAME_DEPTH;
 }
 
 /* Work-items (1, low height + 2): the pixels between two rows of low cells. The sides of u, nearer and guide must be
@@ -163,58 +312,70 @@ __kernel void upsample_depth(__global const float *u, __global const float *near
                              __global ushort *depth, int planes, int width, int height, int low_height, int stride)
 {
     const Stack stack = {bytes, table, channels, planes, width, height};
-    const int low_y = (int)get_global_id(1) - 1;
+    const int low_y = (int)get_global_id(1) - 1, upper_pixel = low_y * SCALE + SCALE / 2;
+    const int first_row = max(upper_pixel, 0), end_row = min(upper_pixel + SCALE, height);
     const size_t picture = (size_t)low_height * stride;
+
+    if (*evidence < LEAST_EVIDENCE) {
+        for (int y = first_row; y < end_row; y++)
+            for (int x = 0; x < width; x++)
+                depth[(size_t)y * width + x] = codes[0];
+        return;
+    }
     Places places;
     find_places(&places);
     size_t rows[4];
     for (int j = 0; j < 4; j++)
         rows[j] = (size_t)reflect(low_y - 1 + j, low_height) * stride + SIDE;
 
-    if (*evidence < LEAST_EVIDENCE) {
-        for (int y = max(low_y * SCALE + SCALE / 2, 0); y < min(low_y * SCALE + SCALE * 3 / 2, height); y++)
-            for (int x = 0; x < width; x++)
-                depth[(size_t)y * width + x] = codes[0];
-        return;
-    }
-    for (int low_x = -1; low_x * SCALE + SCALE / 2 < width; low_x++) {
-        float cells[16];
-        for (int j = 0; j < 4; j++)
-            vstore4(vload4(0, u + rows[j] + low_x - 1), j, cells);
-        const int is_edge = spread(cells) >= SAME_DEPTH;
-        const float blend_at = 0.25f * (nearer[rows[1] + low_x] + nearer[rows[1] + low_x + 1] +
-                                        nearer[rows[2] + low_x] + nearer[rows[2] + low_x + 1]);
-
-        for (int part = 0; part < PARTS; part++) {
-            const int left = low_x * SCALE + SCALE / 2 + part % (SCALE / EDGE) * EDGE;
-            const int top = low_y * SCALE + SCALE / 2 + part / (SCALE / EDGE) * EDGE;
-            const lanes across = places.across[part], down = places.down[part];
-            lanes result;
-            if (is_edge) {
-                lanes red, green, blue, weights = 0.0f;
-                blend_part(&stack, blend_at, noise->t, left, top, &red, &green, &blue);
-                result = 0.0f;
+    for (int low_x = -1; low_x * SCALE + SCALE / 2 < width; low_x += 8) {
+        write_bilinear(u + rows[1], u + rows[2], depth, low_x, upper_pixel, planes, width, height);
+        const int8 edges = are_edges(u, rows, low_x);
+        if (!any_of(edges))
+            continue;
+        int is_edge[8];
+        vstore8(edges, 0, is_edge);
+        for (int square = 0; square < 8; square++) {
+            const int x = low_x + square;
+            if (!is_edge[square] || x * SCALE + SCALE / 2 >= width)
+                continue;
+            const float position = 0.25f * (nearer[rows[1] + x] + nearer[rows[1] + x + 1] + nearer[rows[2] + x] +
+                                            nearer[rows[2] + x + 1]);
+            const Blend blend = blend_at(position, noise->t, planes);
+            for (int part = 0; part < PARTS; part++) {
+                const int left = x * SCALE + SCALE / 2 + part % (SCALE / EDGE) * EDGE;
+                const int top = upper_pixel + part / (SCALE / EDGE) * EDGE;
+                const int is_inside = left >= 0 && top >= 0 && left + EDGE <= width && top + EDGE <= height;
+                const Colours own = is_inside ? blend_part(&stack, &blend, left, top)
+                                              : blend_any_part(&stack, &blend, left, top);
+                lanes weights = 0.0f, sum = 0.0f;
                 UNROLL
                 for (int k = 0; k < 16; k++) {
-                    __global const float *colour = guide + rows[k / 4] + low_x - 1 + k % 4;
-                    const lanes difference = fabs(red - colour[0]) + fabs(green - colour[picture]) +
-                                             fabs(blue - colour[2 * picture]);
+                    const size_t cell = rows[k / 4] + x - 1 + k % 4;
+                    const lanes difference = fabs(own.red - guide[cell]) + fabs(own.green - guide[picture + cell]) +
+                                             fabs(own.blue - guide[2 * picture + cell]);
                     const lanes likeness = max(1.0f - difference * (1.0f / TOLERANCE), 0.0f);
                     const lanes weight = likeness * likeness * places.nearness[part][k] + 1e-5f;
                     weights += weight;
-                    result += weight * cells[k];
+                    sum += weight * u[cell];
                 }
-                result /= weights;
-            } else {
-                const lanes upper = cells[5] + across * (cells[6] - cells[5]);
-                const lanes lower = cells[9] + across * (cells[10] - cells[9]);
-                result = upper + down * (lower - upper);
+                float numbers[LANES];
+                STORE_LANES(NUMBER(sum / weights, planes), numbers);
+                if (is_inside) {
+                    for (int j = 0; j < EDGE; j++)
+                        *(__global codes_anywhere *)(depth + (size_t)(top + j) * width + left) =
+                            CONVERT_CODES(LOAD_PIXELS(numbers + j * EDGE));
+                    continue;
+                }
+                for (int j = max(-top, 0); j < min(EDGE, height - top); j++)
+                    for (int i = max(-left, 0); i < min(EDGE, width - left); i++)
+                        depth[(size_t)(top + j) * width + left + i] = (ushort)(int)numbers[j * EDGE + i];
             }
-            float positions[LANES];
-            STORE_LANES(result, positions);
-            write_depth(depth, positions, codes, is_linear, left, top, planes, width, height);
         }
     }
+    for (int y = first_row; y < end_row && !is_linear; y++)
+        for (int x = 0; x < width; x++)
+            depth[(size_t)y * width + x] = codes[depth[(size_t)y * width + x]];
 }
 
 /* 255 c at full resolution, bilinear. Work-items (1, height). */

@@ -54,6 +54,12 @@ INLINE void mirror_short_ends(__global short *row, int width)
     HALF_SHORTS(row + width) = READ_HALF_SHORTS(row + width - 8).s76543210;
 }
 
+INLINE int any_of(int8 truth)
+{
+    const long4 parts = as_long4(truth);
+    return (parts.s0 | parts.s1 | parts.s2 | parts.s3) != 0;
+}
+
 /* exp(x), x <= 0, to 0.2 %: 2^f as a parabola on the fraction f of x log2 e; the library's is slower. 0 below -80. */
 INLINE float8 quick_exp(float8 x)
 {
