@@ -35,17 +35,9 @@
 /* For vectors to be read and written at their own alignment: a load across two cache lines costs as much as two. */
 #define SCRATCH __attribute__((aligned(64)))
 
-/* Vectors of 32 are clang's, on which the drivers of CPUs are built; OpenCL's own end at 16. */
-typedef uchar uchar32 __attribute__((ext_vector_type(32)));
-typedef short short32 __attribute__((ext_vector_type(32)));
-typedef ushort ushort32 __attribute__((ext_vector_type(32)));
-typedef uchar32 __attribute__((aligned(1))) bytes32;
-typedef short32 __attribute__((aligned(2))) slanes32;
-typedef ushort32 __attribute__((aligned(2))) lanes32;
-typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */
+#include "lanes32.cl"
 
-#define as_short32(v) __builtin_astype(v, short32)
-#define as_ushort32(v) __builtin_astype(v, ushort32)
+typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */
 
 inline ushort32 even_bytes(ushort32 pairs)
 {
@@ -65,16 +57,6 @@ inline float16 even_lanes(ushort32 v)
 inline float16 odd_lanes(ushort32 v)
 {
     return convert_float16(as_int16(as_uint16(v) >> 16));
-}
-
-inline short32 higher(short32 a, short32 b)
-{
-    return a > b ? a : b;
-}
-
-inline short32 lower(short32 a, short32 b)
-{
-    return a < b ? a : b;
 }
 
 /* The picture's part that a tile covers. */
@@ -165,9 +147,8 @@ inline ushort16 sum_quadruples(const uchar *row)
 
 inline ushort32 sum_3_rows(const uchar *row)
 {
-    return __builtin_convertvector(*(const bytes32 *)row, ushort32) +
-           __builtin_convertvector(*(const bytes32 *)(row + STRIDE), ushort32) +
-           __builtin_convertvector(*(const bytes32 *)(row + 2 * STRIDE), ushort32);
+    return widen(*(const bytes32 *)row) + widen(*(const bytes32 *)(row + STRIDE)) +
+           widen(*(const bytes32 *)(row + 2 * STRIDE));
 }
 
 /* Sums of level x level pixels, from two coarse samples before the tile to two behind. */

@@ -4,14 +4,24 @@
 
 #include "engine/opencl/program.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dff {
 
 namespace {
 
-constexpr double fixed_unit = 256.0;           /* UNIT of aif_rows.cl */
+/* aif_strips.cl */
+constexpr double fixed_unit = 256.0; /* UNIT */
+constexpr size_t strip = 8;
+constexpr uint32_t most_columns = 8192;
 constexpr cl_ushort no_fixed_position = 65535; /* NO_POSITION */
+
+/* Component of aif_strips.cl. */
+struct PictureComponent {
+    cl_ulong offset, stride;
+    cl_int first_row, width, height, channels, subsampling;
+};
 
 cl_int2 size_of(const StackShape &shape)
 {
@@ -22,26 +32,30 @@ cl_int2 size_of(const StackShape &shape)
 
 AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape)
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
-      stack_(queue_, shape),
-      in_tiles_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16),
-      noise_(queue_, shape, 2),
-      nearest_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
-      softened_(queue_.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort))),
-      positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
+      stack_(queue_, shape), in_strips_(device_->kernel_style() == KernelStyle::Tiles &&
+                                        shape.format != PixelFormat::Gray16 && shape.width <= most_columns),
+      noise_(queue_, shape, 2), positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
       encoder_(DepthEncoder::index(shape.planes))
 {
     const char *sample = shape.format == PixelFormat::Gray16 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
-    compose_ = in_tiles_ ? Program(*device_, "aif_rows").kernel("compose_rows")
-                         : Program(*device_, "aif", sample).kernel("compose");
-    const Program softening(*device_, "soften_depth");
-    nearest_pixel_ = softening.kernel("nearest_pixel");
-    mean_pixel_ = softening.kernel("mean_pixel");
+    if (in_strips_) {
+        compose_ = Program(*device_, "aif_strips").kernel("compose_strip");
+        picture_components_ = queue_.allocate(components_.size() * sizeof(PictureComponent));
+    } else {
+        compose_ = Program(*device_, "aif", sample).kernel("compose");
+        const Program softening(*device_, "soften_depth");
+        nearest_pixel_ = softening.kernel("nearest_pixel");
+        mean_pixel_ = softening.kernel("mean_pixel");
+        const size_t depth_bytes = size_t{shape.width} * shape.height * sizeof(cl_ushort);
+        nearest_ = queue_.allocate(depth_bytes);
+        softened_ = queue_.allocate(depth_bytes);
+    }
     set_encoder(encoder_);
 }
 
 void AifComposer::set_encoder(const DepthEncoder &encoder)
 {
-    if (in_tiles_)
+    if (in_strips_)
         write_fixed_positions(encoder);
     else
         write_positions(encoder);
@@ -86,62 +100,76 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
             {device_->context(), CL_MEM_READ_ONLY | placement, depth.memory.size(), depth_memory},
             {device_->context(), CL_MEM_READ_WRITE | placement, picture.size(), picture.data()},
             depth.stride / sizeof(cl_ushort)};
-        const Pictures softened{softened_, pictures.output, shape_.width};
 
         stack_.assign(stack);
-        if (blend == Blend::Sharp) {
-            if (!sharp_)
-                sharp_.emplace(queue_, shape_, encoder_);
-            sharp_->measure(stack_);
-        } else {
-            soften(pictures);
-        }
         if (blend == Blend::Soft)
             noise_.run(stack_);
-        queue_.begin_stage("compose");
-        for (size_t c = 0; c < components_.size(); c++)
-            if (blend == Blend::Sharp)
-                sharp_->compose(stack_, c, pictures.depth, pictures.depth_stride, pictures.output, layout[c]);
-            else if (in_tiles_)
-                compose_rows(softened, c, layout[c], blend);
-            else
-                compose_pixels(softened, c, layout[c], blend);
+        if (blend == Blend::Sharp)
+            compose_sharp(pictures, layout);
+        else if (in_strips_)
+            compose_strips(pictures, layout, blend);
+        else
+            compose_pixels(pictures, layout, blend);
         if (!device_->is_cpu())
             queue_.commands().enqueueReadBuffer(pictures.output, CL_FALSE, 0, picture.size(), picture.data());
         times_ = queue_.finish();
     });
 }
 
-void AifComposer::soften(const Pictures &pictures)
+void AifComposer::compose_sharp(const Pictures &pictures, std::span<const RowLayout> layout)
+{
+    if (!sharp_)
+        sharp_.emplace(queue_, shape_, encoder_);
+    sharp_->measure(stack_);
+    queue_.begin_stage("compose");
+    for (size_t c = 0; c < components_.size(); c++)
+        sharp_->compose(stack_, c, pictures.depth, pictures.depth_stride, pictures.output, layout[c]);
+}
+
+void AifComposer::compose_pixels(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend)
 {
     const auto width = static_cast<cl_int>(shape_.width), stride = static_cast<cl_int>(pictures.depth_stride);
     queue_.begin_stage("soften-depth");
     queue_.run(nearest_pixel_, {1, shape_.height}, pictures.depth, nearest_, width, stride);
     queue_.run(mean_pixel_, {1, shape_.height}, pictures.depth, nearest_, softened_, width, stride);
+
+    queue_.begin_stage("compose");
+    for (size_t i = 0; i < components_.size(); i++) {
+        const Component &c = components_[i];
+        const cl_int2 component_size{{static_cast<cl_int>(c.width), static_cast<cl_int>(c.height)}};
+        queue_.run(compose_, {c.width, c.height}, stack_.bytes(), stack_.layout(),
+                   static_cast<cl_int>(i * shape_.planes), softened_, positions_, pictures.output,
+                   cl_ulong2{{layout[i].offset, layout[i].stride}}, component_size,
+                   static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling), size_of(shape_),
+                   width, static_cast<cl_int>(shape_.planes), noise_of(blend));
+    }
 }
 
-void AifComposer::compose_pixels(const Pictures &pictures, size_t component, const RowLayout &rows,
-                                 Blend blend)
+void AifComposer::compose_strips(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend)
 {
-    const Component &c = components_[component];
-    const cl_int2 component_size{{static_cast<cl_int>(c.width), static_cast<cl_int>(c.height)}};
-    queue_.run(compose_, {c.width, c.height}, stack_.bytes(), stack_.layout(),
-               static_cast<cl_int>(component * shape_.planes), pictures.depth, positions_, pictures.output,
-               cl_ulong2{{rows.offset, rows.stride}}, component_size, static_cast<cl_int>(c.channels),
-               static_cast<cl_int>(c.subsampling), size_of(shape_),
-               static_cast<cl_int>(pictures.depth_stride), static_cast<cl_int>(shape_.planes),
-               blend == Blend::Soft ? noise_.noise() : cl::Buffer());
+    if (!std::equal(layout.begin(), layout.end(), picture_layout_.begin(), picture_layout_.end())) {
+        std::vector<PictureComponent> table;
+        for (size_t i = 0; i < components_.size(); i++) {
+            const Component &c = components_[i];
+            table.push_back({layout[i].offset, layout[i].stride, static_cast<cl_int>(i * shape_.planes),
+                             static_cast<cl_int>(c.width), static_cast<cl_int>(c.height),
+                             static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling)});
+        }
+        queue_.commands().enqueueWriteBuffer(picture_components_, CL_TRUE, 0,
+                                             table.size() * sizeof(PictureComponent), table.data());
+        picture_layout_.assign(layout.begin(), layout.end());
+    }
+    queue_.begin_stage("compose");
+    queue_.run_groups(compose_, {(shape_.height + strip - 1) / strip}, stack_.bytes(), stack_.layout(),
+                      pictures.depth, size_of(shape_), static_cast<cl_int>(pictures.depth_stride), positions_,
+                      position_scale_, pictures.output, picture_components_,
+                      static_cast<cl_int>(components_.size()), static_cast<cl_int>(shape_.planes),
+                      noise_of(blend));
 }
 
-void AifComposer::compose_rows(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend)
+cl::Buffer AifComposer::noise_of(Blend blend) const
 {
-    const Component &c = components_[component];
-    queue_.run_groups(
-        compose_, {c.height}, stack_.bytes(), stack_.layout(), static_cast<cl_int>(component * shape_.planes),
-        pictures.depth, positions_, position_scale_, pictures.output, cl_ulong2{{rows.offset, rows.stride}},
-        static_cast<cl_int>(c.width), static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling),
-        size_of(shape_), static_cast<cl_int>(pictures.depth_stride), static_cast<cl_int>(shape_.planes),
-        blend == Blend::Soft ? noise_.noise() : cl::Buffer());
+    return blend == Blend::Soft ? noise_.noise() : cl::Buffer();
 }
 
 } // namespace dff

@@ -50,22 +50,25 @@ private:
 
     void write_positions(const DepthEncoder &encoder);
     void write_fixed_positions(const DepthEncoder &encoder);
-    void soften(const Pictures &pictures);
-    void compose_pixels(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
-    void compose_rows(const Pictures &pictures, size_t component, const RowLayout &rows, Blend blend);
+    void compose_sharp(const Pictures &pictures, std::span<const RowLayout> layout);
+    void compose_pixels(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
+    void compose_strips(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
+    cl::Buffer noise_of(Blend blend) const;
 
     std::shared_ptr<Device> device_;
     StackShape shape_;
     std::vector<Component> components_;
     CommandQueue queue_;
     StackBuffer stack_;
-    bool in_tiles_; /* 16 samples of 8 bits at once, on a CPU */
+    bool in_strips_; /* many samples of 8 bits at once, on a CPU */
     NoiseEstimate noise_;
     cl::Kernel nearest_pixel_, mean_pixel_, compose_;
-    cl::Buffer nearest_, softened_;
+    cl::Buffer nearest_, softened_; /* of compose_pixels() */
+    cl::Buffer picture_components_; /* of compose_strips(): where the picture of picture_layout_ lies */
+    std::vector<RowLayout> picture_layout_;
     cl::Buffer positions_;
     float position_scale_ =
-        0.0f; /* of aif_rows.cl: positions a depth pixel, 0 where they must be looked up */
+        0.0f; /* of aif_strips.cl: positions a depth pixel, 0 where they must be looked up */
     DepthEncoder encoder_;
     std::optional<SharpBlend> sharp_; /* made at its first use */
     StageTimes times_;

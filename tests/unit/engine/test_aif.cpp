@@ -11,13 +11,14 @@ using namespace dff;
 
 namespace {
 
-/* Depth pixels of unit=index that run through all positions, with holes. */
-std::vector<uint16_t> test_depth(const StackShape &shape)
+/* Depth pixels of unit=index that run through all positions, one in seven without a value if there are
+ * `holes`. */
+std::vector<uint16_t> test_depth(const StackShape &shape, bool holes = true)
 {
     const DepthEncoder encoder = DepthEncoder::index(shape.planes);
     std::vector<uint16_t> depth;
     for (unsigned i = 0; i < shape.width * shape.height; i++)
-        depth.push_back(i % 7 == 0 ? 0 : encoder.encode((shape.planes - 1) * (i % 101) / 100.0));
+        depth.push_back(holes && i % 7 == 0 ? 0 : encoder.encode((shape.planes - 1) * (i % 101) / 100.0));
     return depth;
 }
 
@@ -87,13 +88,14 @@ double twin_sample(const std::vector<double> &planes, double u, AifComposer::Ble
 
 } // namespace
 
-class AifFormats : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend, KernelStyle>> {};
+class AifFormats
+    : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend, KernelStyle, bool>> {};
 
 TEST_P(AifFormats, agrees_with_its_twin)
 {
-    const auto [format, blend, style] = GetParam();
+    const auto [format, blend, style, holes] = GetParam();
     const TestStack stack({format, 67, 65, 7});
-    const std::vector<uint16_t> depth = test_depth(stack.shape);
+    const std::vector<uint16_t> depth = test_depth(stack.shape, holes);
     const std::vector<uint16_t> taken_at = softened(depth, stack.shape);
     const std::vector<RowLayout> layout = packed_layout({format, 67, 65, 1});
     std::vector<std::byte> picture(stack.memory.size() / 7);
@@ -211,4 +213,4 @@ INSTANTIATE_TEST_SUITE_P(
                                      PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr, PixelFormat::Rgbx,
                                      PixelFormat::Bgrx),
                      testing::Values(AifComposer::Blend::Linear, AifComposer::Blend::Soft),
-                     testing::Values(KernelStyle::Pixels, KernelStyle::Tiles)));
+                     testing::Values(KernelStyle::Pixels, KernelStyle::Tiles), testing::Bool()));

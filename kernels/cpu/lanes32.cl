@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors
+ *
+ * 32 lanes of 16 bits: one register of AVX-512, two of AVX2. Vectors of 32 are clang's, on which the drivers of CPUs are
+ * built; OpenCL's own end at 16.
+ */
+typedef uchar uchar32 __attribute__((ext_vector_type(32)));
+typedef short short32 __attribute__((ext_vector_type(32)));
+typedef ushort ushort32 __attribute__((ext_vector_type(32)));
+
+/* That may lie anywhere in memory. */
+typedef uchar32 __attribute__((aligned(1))) bytes32;
+typedef short32 __attribute__((aligned(2))) slanes32;
+typedef ushort32 __attribute__((aligned(2))) lanes32;
+
+#define as_short32(v) __builtin_astype(v, short32)
+#define as_ushort32(v) __builtin_astype(v, ushort32)
+
+inline short32 higher(short32 a, short32 b)
+{
+    return a > b ? a : b;
+}
+
+inline short32 lower(short32 a, short32 b)
+{
+    return a < b ? a : b;
+}
+
+inline ushort32 min32(ushort32 a, ushort32 b)
+{
+    return a < b ? a : b;
+}
+
+inline ushort32 widen(uchar32 v)
+{
+    return __builtin_convertvector(v, ushort32);
+}
