@@ -57,6 +57,26 @@ class Installed(unittest.TestCase):
         output = run(sys.executable, SOURCE / 'pipelines/embed/read_depth.py', env=self.environment)
         self.assert_ten_distances(output, 'm')
 
+    def assert_two_sources(self, output):
+        lines = re.findall(r'^sweep (\d+) of (\S+) to (\S+) dioptres: (\d+) mm, colour \d+ \d+ \d+$', output, re.MULTILINE)
+        self.assertEqual([line[:3] for line in lines],
+                         [(str(k), '5', '0.5') for k in range(5)] + [(str(k), '4', '0.25') for k in range(2)], output)
+        self.assertTrue(all(200 <= int(line[3]) <= 4000 for line in lines), output)
+
+    TWO_SOURCES = ('lenssweeptestsrc num-buffers=30 near=5 far=0.5 ! video/x-raw,width=160,height=120',
+                   'lenssweeptestsrc num-buffers=12 near=4 far=0.25 ! video/x-raw,width=96,height=96')
+
+    def test_cpp_program_has_the_camera_in_one_element(self):
+        flags = run('pkg-config', '--cflags', '--libs', 'gstreamer-dff-1.0', 'gstreamer-app-1.0', env=self.environment)
+        program = pathlib.Path(self.folder.name, 'depth_camera')
+        run('c++', '-std=c++20', '-Wall', '-Werror', SOURCE / 'pipelines/embed/depth_camera.cpp', '-o', program,
+            *shlex.split(flags), env=self.environment)
+        self.assert_two_sources(run(program, *self.TWO_SOURCES, env=self.environment))
+
+    def test_python_program_has_the_camera_in_one_element(self):
+        output = run(sys.executable, SOURCE / 'pipelines/embed/depth_camera.py', *self.TWO_SOURCES, env=self.environment)
+        self.assert_two_sources(output)
+
     def test_every_plug_in_is_installed_and_loads(self):
         for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose', 'dffcamerabin', 'depthcolorize', 'dffmetapay', 'depthexrenc',
                         'lightfieldcompose'):

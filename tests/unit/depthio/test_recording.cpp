@@ -27,7 +27,7 @@ std::vector<std::vector<Sample>> play(const std::string &description, const std:
         g_autoptr(GstElement) sink = gst_bin_get_by_name(GST_BIN(pipeline), names[k]);
         GstSample *sample = nullptr;
         for (;;) {
-            g_signal_emit_by_name(sink, "try-pull-sample", 20 * GST_SECOND, &sample);
+            g_signal_emit_by_name(sink, "try-pull-sample", 60 * GST_SECOND, &sample);
             if (!sample)
                 break;
             samples[k].emplace_back(sample);
@@ -35,7 +35,7 @@ std::vector<std::vector<Sample>> play(const std::string &description, const std:
     }
     g_autoptr(GstBus) bus = gst_element_get_bus(pipeline); /* files end a little later */
     g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
-        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+        bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
     EXPECT_TRUE(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
     gst_element_set_state(pipeline, GST_STATE_NULL);
     return samples;

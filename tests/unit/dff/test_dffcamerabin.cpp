@@ -109,7 +109,7 @@ TEST(DffCameraBin, nothing_linked_computes_nothing_and_stops_at_once)
 
 TEST(DffCameraBin, properties_of_its_parts_are_its_own)
 {
-    TestPipeline pipeline(camera(planes, "unit=millimetre method=paper blend=linear mux::on-missing=repeat") +
+    TestPipeline pipeline(camera(planes, "unit=millimetre lambda=2 blend=linear mux::on-missing=repeat") +
                           depth_out);
     pipeline.play();
     EXPECT_EQ(unit_of_first(pipeline), GST_DEPTH_UNIT_MILLIMETRE);
