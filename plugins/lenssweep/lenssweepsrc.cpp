@@ -59,7 +59,7 @@ struct GstLensSweepSrcState {
     guint64 delivered = 0;
     GstClockTime latency = GST_CLOCK_TIME_NONE;
     GstClockTime max_latency = GST_CLOCK_TIME_NONE;
-    std::unique_ptr<dff::SweepCapture> capture; /* the pointer; made and ended by start() and stop() */
+    std::shared_ptr<dff::SweepCapture> capture; /* the pointer; set by start() and stop() */
 
     std::atomic<bool> flushing = false;
     std::atomic<gint64> playing_since_ns = 0; /* frames that arrived before are stale */
@@ -91,7 +91,7 @@ static void post_error(GstLensSweepSrc *self, const std::exception &error)
         GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("%s", error.what()), ("camera, lens or line"));
 }
 
-static void put_capture(GstLensSweepSrc *self, std::unique_ptr<dff::SweepCapture> capture)
+static void put_capture(GstLensSweepSrc *self, std::shared_ptr<dff::SweepCapture> capture)
 {
     GST_OBJECT_LOCK(self);
     self->state->capture.swap(capture);
@@ -124,7 +124,7 @@ static gboolean start(GstBaseSrc *source)
     state.missing = 0;
     try {
         state.settings = properties.settings();
-        auto capture = std::make_unique<dff::SweepCapture>(state.settings);
+        auto capture = std::make_shared<dff::SweepCapture>(state.settings);
         GST_INFO_OBJECT(self, "camera %s", capture->camera().title().c_str());
         state.clock_caps = capture->camera().has_ptp()
                                ? gst_caps_from_string("timestamp/x-ptp,version=IEEE1588-2008,domain=0")
@@ -170,7 +170,7 @@ static GstCaps *get_caps(GstBaseSrc *source, GstCaps *filter)
     GstCaps *caps = nullptr;
     GST_OBJECT_LOCK(self);
     const double frame_rate = self->state->properties.capture.rate * self->state->settings.plan.planes();
-    dff::SweepCapture *capture = self->state->capture.get();
+    const auto capture = self->state->capture; /* stop() may be called meanwhile */
     GST_OBJECT_UNLOCK(self);
     try {
         caps = capture ? camera_caps(capture->camera(), frame_rate) : camera_template_caps();

@@ -5,6 +5,7 @@
 #endif
 
 #ifdef HAVE_ARAVIS
+#include "lenssweepdeviceprovider.h"
 #include "lenssweepsrc.h"
 #endif
 #include "lenssweeptag.h"
@@ -15,7 +16,8 @@ static gboolean plugin_init(GstPlugin *plugin)
     const gboolean tag = GST_ELEMENT_REGISTER(lenssweeptag, plugin);
     const gboolean test_src = GST_ELEMENT_REGISTER(lenssweeptestsrc, plugin);
 #ifdef HAVE_ARAVIS
-    if (!GST_ELEMENT_REGISTER(lenssweepsrc, plugin))
+    if (!GST_ELEMENT_REGISTER(lenssweepsrc, plugin) ||
+        !GST_DEVICE_PROVIDER_REGISTER(lenssweepdeviceprovider, plugin))
         return FALSE;
 #endif
     return tag && test_src;

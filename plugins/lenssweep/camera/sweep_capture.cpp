@@ -20,6 +20,22 @@ namespace {
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr unsigned most_failures = 5;
 
+/* Parts that do not go together. */
+const CaptureSettings &checked(const CaptureSettings &settings)
+{
+    const LensKind lens = LensUri::parse(settings.lens).kind;
+    if (lens == LensKind::Fpga && settings.trigger != TriggerKind::Line)
+        throw std::invalid_argument("the lens " + settings.lens +
+                                    " triggers the camera itself and needs trigger=line");
+    if (lens != LensKind::Fpga && lens != LensKind::None && settings.trigger != TriggerKind::Software)
+        throw std::invalid_argument("the lens " + settings.lens +
+                                    " is moved step by step and needs trigger=software");
+    const bool lines = !settings.run_line.empty() || !settings.sync_line.empty();
+    if (lines && settings.trigger != TriggerKind::Line)
+        throw std::invalid_argument("run-line and sync-line go with trigger=line only");
+    return settings;
+}
+
 std::unique_ptr<Lens> open(const CaptureSettings &settings, AravisCamera &camera)
 {
     return open_lens(LensUri::parse(settings.lens), {settings.lens_profile, &camera});
@@ -28,11 +44,10 @@ std::unique_ptr<Lens> open(const CaptureSettings &settings, AravisCamera &camera
 } // namespace
 
 SweepCapture::SweepCapture(const CaptureSettings &settings)
-    : settings_(settings), camera_(settings.camera), lens_(open(settings, camera_)),
+    : settings_(checked(settings)), camera_(settings.camera), lens_(open(settings, camera_)),
       run_(settings.run_line.empty() ? nullptr : open_output_line(settings.run_line)),
       sync_(settings.sync_line.empty() ? nullptr : open_edge_line(settings.sync_line))
 {
-    check_parts();
     camera_.on_gone([this] { interrupt(); });
     set_exposure(camera_, settings_.exposure_us);
     if (settings_.gain)
@@ -46,20 +61,6 @@ SweepCapture::~SweepCapture()
 {
     stop();
     camera_.on_gone(nullptr);
-}
-
-void SweepCapture::check_parts() const
-{
-    const bool stepped = dynamic_cast<SteppedLens *>(lens_.get());
-    const bool sequenced = dynamic_cast<SequencedLens *>(lens_.get());
-    if (stepped && settings_.trigger != TriggerKind::Software)
-        throw std::invalid_argument("the lens " + settings_.lens +
-                                    " is moved step by step and needs trigger=software");
-    if (sequenced && settings_.trigger != TriggerKind::Line)
-        throw std::invalid_argument("the lens " + settings_.lens +
-                                    " triggers the camera itself and needs trigger=line");
-    if ((run_ || sync_) && settings_.trigger != TriggerKind::Line)
-        throw std::invalid_argument("run-line and sync-line go with trigger=line only");
 }
 
 /* Whole microseconds, which is what sequencers count in. */
@@ -76,6 +77,7 @@ void SweepCapture::make_triggers()
 {
     if (triggers_) {
         before_ = counts();
+        unlabelled_ = 0; /* in before_ now */
         sweep_base_ = next_sweep_;
     }
     const FrameNumbers numbers(camera_.numbering());
@@ -197,8 +199,10 @@ std::optional<CapturedPlane> SweepCapture::labelled(CameraBuffer buffer)
         incomplete_++;
         return std::nullopt;
     }
-    if (quiet_until_ns_)
+    if (quiet_until_ns_) {
+        unlabelled_++;
         return std::nullopt;
+    }
     const CameraFrame frame = buffer.facts();
     const auto verdict = triggers_->label(frame);
     if (triggers_->lost())
@@ -249,6 +253,7 @@ CaptureCounts SweepCapture::counts() const
     counts.labels.dropped_sweeps += labels.dropped_sweeps;
     counts.wrong_edges += triggers_ ? triggers_->wrong_edges() : 0;
     counts.incomplete = incomplete_;
+    counts.labels.unlabelled += unlabelled_;
     counts.underruns = stream_ ? stream_->underruns() : 0;
     counts.restarts = restarts_;
     return counts;

@@ -79,7 +79,6 @@ public:
     std::int64_t last_frame_ns() const { return last_frame_ns_; }
 
 private:
-    void check_parts() const;
     void set_timing();
     void make_triggers();
     void wait_armed();
@@ -103,6 +102,7 @@ private:
     CaptureCounts before_; /* of triggers that are gone */
     std::uint64_t incomplete_ = 0;
     std::uint64_t restarts_ = 0;
+    std::uint64_t unlabelled_ = 0; /* while triggers came to rest, since before_ */
     std::uint64_t sweep_base_ = 0; /* of the labels' sweeps */
     std::uint64_t next_sweep_ = 0; /* the first one no plane had */
     unsigned failures_ = 0;        /* recoveries without one label since */
