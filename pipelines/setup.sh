@@ -17,6 +17,10 @@ test_packages=(
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
     iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg)
 
+# For the virtual machine of tests/rig/vm, which is one of this kind.
+[ "$(dpkg --print-architecture 2>/dev/null)" != amd64 ] || test_packages+=(
+    qemu-system-x86 seabios busybox-static kmod cpio v4l-utils linux-headers-amd64 linux-source-6.1)
+
 # say TEXT: one line about what happens now, with the minutes and seconds since the start.
 say() {
     printf '== %02d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"

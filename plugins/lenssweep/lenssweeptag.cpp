@@ -321,6 +321,11 @@ static std::optional<PlaneLabel> find_label(GstLensSweepTag *self, GstBuffer *bu
     if (time)
         *time -= state.used.timestamp_delay_ns;
     const auto label = state.sync->label(time);
+    GST_LOG_OBJECT(self,
+                   "exposed at %" GST_TIME_FORMAT ", after %" G_GUINT64_FORMAT
+                   " edges: plane %d, misfit %" G_GINT64_FORMAT " ns",
+                   GST_TIME_ARGS(time.value_or(GST_CLOCK_TIME_NONE)), state.sync->edges(),
+                   label ? static_cast<int>(label->plane) : -1, state.sync->misfit_ns().value_or(0));
     state.unlabelled = label ? 0 : state.unlabelled + 1;
     if (state.unlabelled == patience_sweeps * state.plan->planes())
         warn_of_sync(self);

@@ -31,7 +31,9 @@ void FpgaSweepLens::prepare(const LensSweep &sweep)
     table.planes = plane_steps(sweep.plan, profile_);
     table.period = sweep.period;
     const auto needed = sequencer_.timing().gap + profile_.overdrive_delay();
-    table.exposure = sweep.exposure.count() > 0 ? sweep.exposure : sweep.period - needed - profile_.settle();
+    table.exposure = sweep.exposure.count() > 0
+                         ? sweep.exposure
+                         : std::max(sweep.period - needed - profile_.settle(), sweep.period / 2);
     /* Settling beyond what the gap holds goes on into the exposure; the label is the calibrated vergence. */
     const auto room = std::max(sweep.period - table.exposure - needed, std::chrono::microseconds{0});
     for (auto &step : table.planes) {

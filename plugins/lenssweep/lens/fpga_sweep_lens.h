@@ -17,7 +17,8 @@ public:
     /* Throws I2cError if the slave is something else. */
     FpgaSweepLens(std::unique_ptr<I2cBus> bus, LensProfile profile);
 
-    /* Loads the table of the sweep. An exposure of 0 is the longest that leaves the lens its time. */
+    /* Loads the table of the sweep. An exposure of 0 is the longest that leaves the lens its time, but
+     * half a period at least. */
     void prepare(const LensSweep &sweep) override;
     void start() override;
     void stop() override;

@@ -93,6 +93,14 @@ TEST(FpgaSweepLens, exposure_left_open_is_what_the_lens_leaves)
                          "0000"));
 }
 
+TEST(FpgaSweepLens, exposure_left_open_is_half_a_period_for_a_slow_lens)
+{
+    I2cRecord bus = answering_sequencer();
+    dff::FpgaSweepLens lens(std::make_unique<FakeI2cBus>(bus), shipped()); /* 20 ms to settle */
+    lens.prepare({dff::SweepPlan::even(2, 10.0, 0.0), 6400us, 0us, false});
+    EXPECT_TRUE(has(bus, "block8d=020000000019800c0000640000000000"));
+}
+
 TEST(FpgaSweepLens, times_and_powers_that_cannot_be_met_are_refused_with_the_rule)
 {
     I2cRecord bus = answering_sequencer();

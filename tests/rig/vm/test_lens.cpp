@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lens/fpga_lens.h"
+#include "lens/linux_i2c_bus.h"
+#include "lens/open_lens.h"
+#include "lens/sweep_registers.h"
+#include "rig.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+using namespace std::chrono_literals;
+using dff::sweep_registers::Word;
+
+namespace {
+
+using Log = std::vector<std::string>;
+
+uint8_t number(Word word)
+{
+    return static_cast<uint8_t>(word);
+}
+
+std::unique_ptr<dff::Lens> open(const std::string &uri)
+{
+    auto lens = dff::open_lens(dff::LensUri::parse(uri), {});
+    rig::empty_i2c_log();
+    return lens;
+}
+
+/* Codes that the log shows committed to the lens, in order. */
+std::vector<int> committed_codes()
+{
+    std::vector<int> codes;
+    int low = 0;
+    int high = 0;
+    for (const auto &line : rig::i2c_log()) {
+        const int value = std::stoi(line.substr(line.find('=') + 1), nullptr, 16);
+        if (line.starts_with("77 04="))
+            low = value >> 6;
+        else if (line.starts_with("77 08="))
+            high = value;
+        else if (line == "77 09=02")
+            codes.push_back(high << 2 | low);
+    }
+    return codes;
+}
+
+} // namespace
+
+TEST(Sequencer, table_is_written_and_reads_back)
+{
+    const auto lens = open("fpga:" + rig::i2c_bus());
+    lens->prepare({dff::SweepPlan::even(6, 5.0, 0.0), 6400us, 6000us, true});
+
+    dff::LinuxI2cBus bus(rig::i2c_bus(), 0x3c);
+    EXPECT_EQ(bus.read_word(number(Word::planes)), 6);
+    EXPECT_EQ(bus.read_word(number(Word::period_us)), 6400);
+    EXPECT_EQ(bus.read_word(number(Word::exposure_us)), 6000);
+    for (unsigned plane = 0; plane < 6; ++plane) {
+        bus.write_word(number(Word::plane_select), static_cast<uint16_t>(plane));
+        EXPECT_EQ(bus.read_word(number(Word::plane_code_b)), lens->code(plane));
+        EXPECT_EQ(bus.read_word(number(Word::plane_settle_us)), 109);
+    }
+    const Log log = rig::i2c_log();
+    EXPECT_NE(std::find(log.begin(), log.end(), "3c 0c=0001"), log.end()) << "not committed";
+    EXPECT_GT(lens->code(0), lens->code(5));
+}
+
+TEST(Sequencer, is_started_behind_its_run_line_and_stopped_when_it_is_let_go)
+{
+    {
+        const auto lens = open("fpga:" + rig::i2c_bus() + "@0x3c");
+        lens->prepare({dff::SweepPlan::even(6, 5.0, 0.0), 6400us, 6000us, true});
+        rig::empty_i2c_log();
+        lens->start();
+        dynamic_cast<dff::SequencedLens &>(*lens).check();
+    }
+    EXPECT_EQ(rig::i2c_log(), (Log{"3c 04=ffff", "3c 02=0003", "3c 02=0000"}));
+}
+
+TEST(Sequencer, another_slave_is_refused)
+{
+    EXPECT_THROW(open("fpga:" + rig::i2c_bus() + "@0x20"), dff::LensError);
+}
+
+TEST(LensDriver, codes_of_a_sweep_are_committed_in_order)
+{
+    const auto lens = open("max14574:" + rig::i2c_bus());
+    auto &stepped = dynamic_cast<dff::SteppedLens &>(*lens);
+    lens->prepare({dff::SweepPlan::even(6, 5.0, 0.0)});
+    lens->start();
+    std::vector<int> expected;
+    for (int sweep = 0; sweep < 2; ++sweep) {
+        for (unsigned plane = 0; plane < 6; ++plane) {
+            stepped.move_to(plane);
+            EXPECT_TRUE(stepped.wait_settled({}));
+            expected.push_back(lens->code(plane));
+        }
+    }
+    EXPECT_EQ(committed_codes(), expected);
+    EXPECT_TRUE(std::is_sorted(expected.begin(), expected.begin() + 6, std::greater<>()));
+    lens->stop();
+    EXPECT_EQ(rig::i2c_log().back(), "77 03=00");
+}
+
+TEST(LensDriver, transfers_that_fail_twice_are_tried_again)
+{
+    const auto lens = open("max14574:" + rig::i2c_bus());
+    lens->prepare({dff::SweepPlan::even(2, 5.0, 0.0)});
+    lens->start();
+    rig::fail_i2c_transfers(2);
+    dynamic_cast<dff::SteppedLens &>(*lens).move_to(1);
+    EXPECT_EQ(committed_codes(), (std::vector<int>{lens->code(1)}));
+}
+
+TEST(LensDriver, transfers_that_keep_failing_end_in_an_error_and_a_lens_asleep)
+{
+    const auto lens = open("max14574:" + rig::i2c_bus());
+    lens->prepare({dff::SweepPlan::even(2, 5.0, 0.0)});
+    lens->start();
+    rig::fail_i2c_transfers(3);
+    EXPECT_THROW(dynamic_cast<dff::SteppedLens &>(*lens).move_to(1), dff::LensError);
+    EXPECT_EQ(committed_codes(), std::vector<int>{});
+    EXPECT_EQ(rig::i2c_log().back(), "77 03=00");
+}
+
+TEST(VideoLens, is_moved_over_its_range_after_autofocus_is_switched_off_and_gives_it_back)
+{
+    const auto autofocus = [] {
+        FILE *tool = popen("v4l2-ctl -d /dev/video0 -C focus_automatic_continuous,focus_absolute", "r");
+        std::string text;
+        for (int c = fgetc(tool); c != EOF; c = fgetc(tool))
+            text += static_cast<char>(c);
+        pclose(tool);
+        return text;
+    };
+    EXPECT_NE(autofocus().find("continuous: 1"), std::string::npos) << autofocus();
+    {
+        const auto lens = dff::open_lens(dff::LensUri::parse("v4l2:/dev/video0"), {});
+        lens->prepare({dff::SweepPlan::even(4, 3.0, 0.0)});
+        EXPECT_FALSE(lens->calibrated());
+        EXPECT_EQ(lens->code(0), 220);
+        EXPECT_EQ(lens->code(1), 160);
+        EXPECT_EQ(lens->code(2), 100);
+        EXPECT_EQ(lens->code(3), 40);
+        lens->start();
+        dynamic_cast<dff::SteppedLens &>(*lens).move_to(1);
+        EXPECT_NE(autofocus().find("absolute: 160"), std::string::npos) << autofocus();
+        EXPECT_NE(autofocus().find("continuous: 0"), std::string::npos) << autofocus();
+        EXPECT_THROW(lens->prepare({dff::SweepPlan::even(20, 3.0, 0.0)}),
+                     std::invalid_argument); /* 19 positions */
+    }
+    EXPECT_NE(autofocus().find("continuous: 1"), std::string::npos) << autofocus();
+}

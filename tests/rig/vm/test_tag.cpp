@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "rig.h"
+#include "support.h"
+
+#include <atomic>
+#include <cmath>
+#include <gst/video/video.h>
+#include <gtest/gtest.h>
+#include <map>
+#include <thread>
+
+namespace {
+
+constexpr const char *camera =
+    "v4l2src device=/dev/video0 ! video/x-raw,format=YUY2,width=320,height=180,framerate=15/1 ! ";
+
+/* Mean of the luma of a YUY2 frame. */
+double brightness(GstSample *sample)
+{
+    const auto bytes = bytes_of(sample);
+    double sum = 0;
+    for (size_t i = 0; i < bytes.size(); i += 2)
+        sum += bytes[i];
+    return sum / (static_cast<double>(bytes.size()) / 2);
+}
+
+guint64 count_of(GstElement *tag, const char *name)
+{
+    g_autoptr(GstStructure) stats = nullptr;
+    guint64 count = 0;
+    g_object_get(tag, "stats", &stats, nullptr);
+    gst_structure_get_uint64(stats, name, &count);
+    return count;
+}
+
+GstPadProbeReturn note_first(GstPad *, GstPadProbeInfo *info, gpointer first)
+{
+    *static_cast<std::atomic<GstClockTime> *>(first) = GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info));
+    return GST_PAD_PROBE_REMOVE;
+}
+
+} // namespace
+
+/* The rig's lens shows its position as the picture's brightness, 60 ms after it was moved. */
+TEST(StepMode, frames_show_the_lens_at_the_plane_of_their_label)
+{
+    Pipeline pipeline(std::string(camera) +
+                      "lenssweeptag name=tag lens=v4l2:/dev/video0 mode=step planes=3 near=2 far=0 ! "
+                      "appsink name=out max-buffers=100");
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    std::map<unsigned, std::pair<double, double>> range; /* of the brightness, by plane */
+    for (guint64 i = 0; i < 9; ++i) {
+        const Sample sample = pipeline.pull("out");
+        ASSERT_TRUE(sample) << pipeline.wait();
+        const GstFocusMeta *focus = focus_of(sample);
+        ASSERT_NE(focus, nullptr);
+        EXPECT_EQ(focus->sweep, i / 3);
+        EXPECT_EQ(focus->plane, i % 3);
+        EXPECT_EQ(focus->code, 220 - 90 * static_cast<int>(i % 3));
+        EXPECT_TRUE(std::isnan(focus->power));
+        const double light = brightness(sample.get());
+        auto &[low, high] = range.try_emplace(focus->plane, light, light).first->second;
+        low = std::min(low, light);
+        high = std::max(high, light);
+    }
+    EXPECT_GT(range[0].first, range[1].second + 10) << "the nearest plane is the brightest";
+    EXPECT_GT(range[1].first, range[2].second + 10);
+    for (const auto &[plane, lights] : range)
+        EXPECT_LT(lights.second - lights.first, 5) << "plane " << plane;
+    GstElement *tag = pipeline.element("tag");
+    EXPECT_GE(count_of(tag, "labelled"), 9U);
+    EXPECT_GE(count_of(tag, "dropped"), 9U);
+}
+
+TEST(StepMode, bus_that_does_not_answer_ends_in_an_error)
+{
+    Pipeline pipeline("videotestsrc is-live=true ! video/x-raw,framerate=30/1 ! lenssweeptag lens=max14574:" +
+                      rig::i2c_bus() + " mode=step planes=2 ! appsink name=out max-buffers=100");
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    ASSERT_TRUE(pipeline.pull("out"));
+    rig::fail_i2c_transfers(1000000);
+    const std::string error = pipeline.wait();
+    rig::fail_i2c_transfers(0);
+    EXPECT_NE(error.find("sweep has stopped"), std::string::npos) << error;
+}
+
+TEST(SyncMode, frames_are_labelled_by_the_edges_of_the_line)
+{
+    constexpr guint64 planes = 3;
+    constexpr GstClockTime period = GST_SECOND / 5;
+    Pipeline pipeline(
+        "videotestsrc is-live=true num-buffers=30 ! video/x-raw,width=64,height=64,framerate=5/1 ! "
+        "identity sleep-time=100000 ! lenssweeptag name=tag mode=sync sync-line=SYNC planes=3 near=2 far=0 ! "
+        "appsink name=out max-buffers=100");
+    std::atomic<GstClockTime> first = GST_CLOCK_TIME_NONE; /* PTS of the first frame */
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(pipeline.element("tag"), "sink");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, note_first, &first, nullptr);
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+
+    /* The sequencer: an edge at the time of every third frame, which comes half a period later, as from a
+     * camera. */
+    std::jthread sequencer([&](const std::stop_token &stop) {
+        while (first == GST_CLOCK_TIME_NONE && !stop.stop_requested())
+            std::this_thread::sleep_for(std::chrono::milliseconds{5});
+        g_autoptr(GstClock) clock = gst_system_clock_obtain();
+        const GstClockTime begin = gst_element_get_base_time(pipeline.get()) + first;
+        for (guint64 sweep = 1; sweep < 10 && !stop.stop_requested(); ++sweep) {
+            GstClockID edge = gst_clock_new_single_shot_id(clock, begin + sweep * planes * period);
+            gst_clock_id_wait(edge, nullptr);
+            gst_clock_id_unref(edge);
+            rig::pull(rig::sync_line, true);
+            rig::pull(rig::sync_line, false);
+        }
+    });
+    const auto samples = pipeline.pull_all("out");
+    EXPECT_GE(samples.size(), 6U);
+    for (const auto &sample : samples) {
+        const GstClockTime time = GST_BUFFER_PTS(gst_sample_get_buffer(sample.get())) - first;
+        const guint64 frame = (time + period / 2) / period;
+        ASSERT_NE(focus_of(sample), nullptr);
+        EXPECT_EQ(focus_of(sample)->plane, frame % planes) << "frame " << frame;
+    }
+    GstElement *tag = pipeline.element("tag");
+    EXPECT_EQ(count_of(tag, "frames"), 30U);
+    EXPECT_EQ(count_of(tag, "labelled") + count_of(tag, "dropped"), 30U);
+}
+
+TEST(SyncMode, sequencer_that_stops_by_itself_ends_in_an_error)
+{
+    Pipeline pipeline(
+        "videotestsrc is-live=true ! video/x-raw,width=64,height=64,framerate=100/1 ! lenssweeptag mode=sync "
+        "sync-line=SYNC lens=fpga:" +
+        rig::i2c_bus() + " planes=3 near=2 far=0 ! fakesink");
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    std::this_thread::sleep_for(std::chrono::milliseconds{200});
+    rig::fail_i2c_transfers(1000000);
+    const std::string error = pipeline.wait();
+    rig::fail_i2c_transfers(0);
+    EXPECT_NE(error.find("sweep has stopped"), std::string::npos) << error;
+}
