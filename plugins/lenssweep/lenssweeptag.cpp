@@ -33,13 +33,8 @@
  */
 #include "lenssweeptag.h"
 
-#include "frame_cycle.h"
-#include "lens/open_lens.h"
-#include "step_tagger.h"
-#include "sync_tagger.h"
-#include "tag_settings.h"
+#include "sweep_tagger.h"
 
-#include <cmath>
 #include <exception>
 #include <gst/dff/dff.h>
 #include <gst/video/video.h>
@@ -58,9 +53,6 @@ namespace {
 
 enum { PROP_STATS = first_id_after_tag_properties };
 
-/* Sweeps without a label after which mode=sync says what is wrong. */
-constexpr guint patience_sweeps = 16;
-
 struct TagCounts {
     guint64 frames = 0;
     guint64 labelled = 0;
@@ -75,14 +67,9 @@ struct GstLensSweepTagState {
     TagCounts counts;
     std::stop_source stop; /* of a wait for the lens; requested while flushing or stopping */
 
-    /* Guarded by the sink pad's stream lock, while started. One of the last three is there, by mode. */
-    std::optional<dff::SweepPlan> plan;
-    TagSettings used;
+    /* Guarded by the sink pad's stream lock, while started. */
+    std::unique_ptr<SweepTagger> tagger;
     guint64 frames = 0;
-    guint unlabelled = 0; /* frames in a row */
-    std::optional<FrameCycle> cycle;
-    std::unique_ptr<StepTagger> step;
-    std::unique_ptr<SyncTagger> sync;
 };
 
 struct _GstLensSweepTag {
@@ -95,67 +82,24 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(lenssweeptag, "lenssweeptag", GST_RANK_NON
                                       GST_DEBUG_CATEGORY_INIT(gst_lens_sweep_tag_debug, "lenssweeptag", 0,
                                                               "labels of swept planes"))
 
-/* Opens what the mode needs. Throws what is wrong, for the user. */
-static void open_mode(GstLensSweepTagState &state)
-{
-    const TagSettings &settings = state.used;
-    state.plan = settings.sweep.plan();
-    auto lens = dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile});
-    auto *stepped = dynamic_cast<dff::SteppedLens *>(lens.get());
-    auto *sequenced = dynamic_cast<dff::SequencedLens *>(lens.get());
-    if (settings.mode == GST_LENS_SWEEP_TAG_MODE_CYCLE) {
-        if (stepped || sequenced)
-            throw std::invalid_argument("mode=cycle moves no lens; use mode=step with lens=" + settings.lens +
-                                        ", or mode=sync with lens=fpga:");
-        state.cycle.emplace(state.plan->planes(), std::nullopt);
-    } else if (settings.mode == GST_LENS_SWEEP_TAG_MODE_STEP) {
-        if (!stepped)
-            throw std::invalid_argument(
-                "mode=step needs a lens that can be moved, as lens=v4l2:/dev/video0 or "
-                "lens=max14574:/dev/i2c-1");
-        lens->prepare({*state.plan});
-        lens->start();
-        lens.release();
-        state.step = std::make_unique<StepTagger>(std::unique_ptr<dff::SteppedLens>(stepped),
-                                                  state.plan->planes(), settings.settle_frames);
-    } else {
-        if (stepped || settings.sync_line.empty())
-            throw std::invalid_argument("mode=sync needs sync-line, as gpiochip0:5, and lens=fpga: or none");
-        lens.release();
-        state.sync =
-            std::make_unique<SyncTagger>(dff::open_edge_line(settings.sync_line),
-                                         std::unique_ptr<dff::SequencedLens>(sequenced), *state.plan);
-    }
-}
-
-static void close_mode(GstLensSweepTagState &state)
-{
-    state.cycle.reset();
-    state.step.reset();
-    state.sync.reset();
-}
-
 static gboolean start(GstBaseTransform *transform)
 {
     auto *self = GST_LENS_SWEEP_TAG(transform);
     GstLensSweepTagState &state = *self->state;
     GST_OBJECT_LOCK(self);
-    state.used = state.settings;
+    const TagSettings settings = state.settings;
     state.counts = {};
     GST_OBJECT_UNLOCK(self);
     state.frames = 0;
-    state.unlabelled = 0;
     try {
-        open_mode(state);
+        state.tagger = std::make_unique<SweepTagger>(settings);
     } catch (const std::invalid_argument &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("The properties cannot be used: %s.", error.what()),
                           (nullptr));
-        close_mode(state);
         return FALSE;
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, OPEN_READ_WRITE, ("The sweep cannot begin: %s.", error.what()),
                           (nullptr));
-        close_mode(state);
         return FALSE;
     }
     return TRUE;
@@ -163,7 +107,7 @@ static gboolean start(GstBaseTransform *transform)
 
 static gboolean stop(GstBaseTransform *transform)
 {
-    close_mode(*GST_LENS_SWEEP_TAG(transform)->state);
+    GST_LENS_SWEEP_TAG(transform)->state->tagger.reset();
     return TRUE;
 }
 
@@ -180,15 +124,8 @@ static std::optional<uint64_t> frame_period(const GstCaps *caps)
 static gboolean set_caps(GstBaseTransform *transform, GstCaps *caps, GstCaps *)
 {
     auto *self = GST_LENS_SWEEP_TAG(transform);
-    GstLensSweepTagState &state = *self->state;
-    const auto period = frame_period(caps);
     try {
-        if (state.cycle)
-            state.cycle->set_period(period);
-        else if (state.step)
-            state.step->set_period(period);
-        else
-            state.sync->begin(std::chrono::microseconds{period.value_or(0) / 1000});
+        self->state->tagger->set_period(frame_period(caps));
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
                           ("The lens cannot sweep at the frame rate of this stream: %s.", error.what()),
@@ -216,10 +153,7 @@ static gboolean sink_event(GstBaseTransform *transform, GstEvent *event)
         set_interrupted(self, true);
     if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
         set_interrupted(self, false);
-        if (self->state->cycle)
-            self->state->cycle->restart();
-        if (self->state->step)
-            self->state->step->restart();
+        self->state->tagger->restart();
     }
     return GST_BASE_TRANSFORM_CLASS(gst_lens_sweep_tag_parent_class)->sink_event(transform, event);
 }
@@ -265,86 +199,33 @@ static std::optional<uint64_t> monotonic_time_of(GstBaseTransform *transform, co
     return static_cast<uint64_t>(g_get_monotonic_time() * 1000 - ago);
 }
 
-static PlaneLabel cycle_label(GstLensSweepTag *self, const FrameTrace &trace)
-{
-    FrameCycle &cycle = *self->state->cycle;
-    const PlaneLabel label = cycle.label(trace);
-    if (cycle.lost_place())
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("Frames are missing and nothing says how many; the planes may be labelled wrongly from "
-             "here on. Use a source that numbers its frames or gives them times."),
-            ("sweep %" G_GUINT64_FORMAT " begins", label.sweep));
-    return label;
-}
-
-/* Says, once, what keeps frames and edges from fitting together. */
-static void warn_of_sync(GstLensSweepTag *self)
-{
-    const SyncTagger &sync = *self->state->sync;
-    if (sync.edges() == 0)
-        GST_ELEMENT_WARNING(
-            self, RESOURCE, READ,
-            ("No edges come on the sync line %s, so frames cannot be labelled: see whether the "
-             "lens sweeps, and the line is the right one.",
-             self->state->used.sync_line.c_str()),
-            (nullptr));
-    else if (sync.misfit_ns())
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("Frames and the edges of the sync line do not fit together: frames lie %.3f ms off. Set "
-             "timestamp-delay to the time from exposure to timestamp, and see whether there are %u "
-             "planes.",
-             static_cast<double>(*sync.misfit_ns()) / 1e6, self->state->plan->planes()),
-            (nullptr));
-    else
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("Frames and the edges of the sync line do not fit together: see whether there are %u "
-             "planes, and the camera sends each of them.",
-             self->state->plan->planes()),
-            (nullptr));
-}
-
 static std::optional<PlaneLabel> find_label(GstLensSweepTag *self, GstBuffer *buffer, const FrameTrace &trace)
 {
-    GstLensSweepTagState &state = *self->state;
-    if (state.cycle)
-        return cycle_label(self, trace);
-    auto time = monotonic_time_of(GST_BASE_TRANSFORM(self), buffer);
-    if (state.step) {
-        GST_OBJECT_LOCK(self);
-        const std::stop_token stop = state.stop.get_token();
-        GST_OBJECT_UNLOCK(self);
-        return state.step->label(time, stop);
-    }
-    if (time)
-        *time -= state.used.timestamp_delay_ns;
-    const auto label = state.sync->label(time);
-    GST_LOG_OBJECT(self,
-                   "exposed at %" GST_TIME_FORMAT ", after %" G_GUINT64_FORMAT
-                   " edges: plane %d, misfit %" G_GINT64_FORMAT " ns",
-                   GST_TIME_ARGS(time.value_or(GST_CLOCK_TIME_NONE)), state.sync->edges(),
-                   label ? static_cast<int>(label->plane) : -1, state.sync->misfit_ns().value_or(0));
-    state.unlabelled = label ? 0 : state.unlabelled + 1;
-    if (state.unlabelled == patience_sweeps * state.plan->planes())
-        warn_of_sync(self);
+    SweepTagger &tagger = *self->state->tagger;
+    const auto time = monotonic_time_of(GST_BASE_TRANSFORM(self), buffer);
+    GST_OBJECT_LOCK(self);
+    const std::stop_token stop = self->state->stop.get_token();
+    GST_OBJECT_UNLOCK(self);
+    const auto label = tagger.label(trace, time, stop);
+    GST_LOG_OBJECT(self, "frame of %" GST_TIME_FORMAT " is plane %d",
+                   GST_TIME_ARGS(time.value_or(GST_CLOCK_TIME_NONE)),
+                   label ? static_cast<int>(label->plane) : -1);
+    const std::string warning = tagger.warning();
+    if (!warning.empty())
+        GST_ELEMENT_WARNING(self, STREAM, FAILED, ("%s", warning.c_str()), (nullptr));
     return label;
 }
 
-static void add_focus_meta(GstLensSweepTagState &state, GstBuffer *buffer, const PlaneLabel &label,
+static void add_focus_meta(const SweepTagger &tagger, GstBuffer *buffer, const PlaneLabel &label,
                            guint64 frame_id)
 {
     GstFocusInfo focus;
     gst_focus_info_init(&focus);
     focus.sweep = label.sweep;
     focus.plane = label.plane;
-    focus.planes = state.plan->planes();
-    focus.power = state.step && !state.step->calibrated() ? NAN : state.plan->power(label.plane);
-    if (state.step)
-        focus.code = state.step->code(label.plane);
-    else if (state.sync)
-        focus.code = state.sync->code(label.plane);
+    focus.planes = tagger.planes();
+    focus.power = tagger.power(label.plane);
+    focus.code = tagger.code(label.plane);
     focus.frame_id = frame_id;
     if (GstFocusMeta *old = gst_buffer_get_focus_meta(buffer))
         gst_buffer_remove_meta(buffer, &old->meta);
@@ -371,7 +252,7 @@ static GstFlowReturn transform_ip(GstBaseTransform *transform, GstBuffer *buffer
     GST_OBJECT_UNLOCK(self);
     if (!label)
         return GST_BASE_TRANSFORM_FLOW_DROPPED;
-    add_focus_meta(state, buffer, *label, frame_id);
+    add_focus_meta(*state.tagger, buffer, *label, frame_id);
     return GST_FLOW_OK;
 }
 

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "frame_cycle.h"
+#include "step_tagger.h"
+#include "sync_tagger.h"
+#include "tag_settings.h"
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+/* Labels frames as the mode of lenssweeptag says, with the lens and the line that it needs. */
+class SweepTagger {
+public:
+    /* Opens lens and line. Throws std::invalid_argument for settings that cannot be used, dff::LensError and
+     * dff::LineError for devices. */
+    explicit SweepTagger(const TagSettings &settings);
+
+    /* The time between two frames of the stream, if it is known. A sequencer of ours begins to sweep; throws
+     * std::invalid_argument if it cannot keep that time, and dff::LensError. */
+    void set_period(std::optional<uint64_t> period_ns);
+
+    /* After a flush. */
+    void restart();
+
+    /* The label of a frame, or nothing if it is to be dropped; `time_ns` is its timestamp on CLOCK_MONOTONIC.
+     * A wait for the lens ends when `stop` is requested. Throws dff::LensError and dff::LineError. */
+    std::optional<PlaneLabel> label(const FrameTrace &trace, std::optional<uint64_t> time_ns,
+                                    const std::stop_token &stop);
+
+    /* What the user must be told after the last frame; mostly empty. */
+    std::string warning() const;
+
+    unsigned planes() const { return plan_.planes(); }
+
+    /* Vergence in dioptres; NAN if the lens is not calibrated. */
+    double power(unsigned plane) const;
+
+    /* What the lens is told for a plane, or -1. */
+    int code(unsigned plane) const;
+
+private:
+    void open_step(std::unique_ptr<dff::Lens> lens);
+    void open_sync(std::unique_ptr<dff::Lens> lens);
+    std::string sync_warning() const;
+
+    TagSettings settings_;
+    dff::SweepPlan plan_;
+    unsigned unlabelled_ = 0; /* frames in a row */
+
+    /* One of them is there, by mode. */
+    std::optional<FrameCycle> cycle_;
+    std::unique_ptr<StepTagger> step_;
+    std::unique_ptr<SyncTagger> sync_;
+};
