@@ -53,7 +53,7 @@ class DepthStream:
         if 'near' in facts:
             restored += f',depth-near=(double){facts["near"]},depth-far=(double){facts["far"]}'
         decoder = DECODERS[rtp.get_string('encoding-name')].format(**facts)
-        receiver = Gst.parse_bin_from_description(f'{decoder} ! capssetter caps="{restored}"', True)
+        receiver = Gst.parse_bin_from_description(f'{decoder} ! videoconvert ! capssetter caps="{restored}"', True)
         self.pipeline.add(receiver)
         receiver.link(self.sink)
         receiver.sync_state_with_parent()
