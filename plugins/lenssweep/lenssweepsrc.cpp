@@ -21,7 +21,7 @@
  * next.
  * - `software`: this element moves the lens, waits until it rests, and tells the camera to expose. Numbers,
  * times and commands must agree.
- * - `free-run`: nothing moves in step; frames are counted, and after a gap that cannot be explained a new
+ * - `free-run`: nothing moves in step; frames are counted, those that were lost by their numbers.
  * sweep begins.
  *
  * Silence of the trigger is no error, unless `trigger-timeout` says so. A camera that does not answer any

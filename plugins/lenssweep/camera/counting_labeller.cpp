@@ -6,8 +6,8 @@
 
 namespace dff {
 
-CountingLabeller::CountingLabeller(const SweepTiming &timing, FrameNumbers numbers)
-    : timing_(timing), numbers_(numbers)
+CountingLabeller::CountingLabeller(const SweepTiming &timing, FrameNumbers numbers, Counts what)
+    : timing_(timing), numbers_(numbers), what_(what)
 {
 }
 
@@ -25,9 +25,11 @@ bool CountingLabeller::is_first(const CameraFrame &frame) const
            frame.arrival_ns - *rested_until_ns_ <= timing_.exposure_ns + timing_.period_ns * 7 / 8;
 }
 
-/* The periods that a free-running camera keeps may be half a percent off. */
+/* The sequencer's clock may be half a percent off. */
 bool CountingLabeller::agrees(const CameraFrame &frame, std::int64_t index) const
 {
+    if (what_ == Counts::FreeRun)
+        return true;
     const std::int64_t planes = timing_.planes;
     const std::int64_t sweeps = index / planes - newest_->index / planes;
     const std::int64_t periods = index % planes - newest_->index % planes;

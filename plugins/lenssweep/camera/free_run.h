@@ -11,7 +11,8 @@ namespace dff {
 class FreeRun : public Triggers {
 public:
     FreeRun(const SweepTiming &timing, FrameNumbers numbers)
-        : Triggers(std::make_unique<CountingLabeller>(timing, numbers), [] {})
+        : Triggers(std::make_unique<CountingLabeller>(timing, numbers, CountingLabeller::Counts::FreeRun),
+                   [] {})
     {
     }
 
