@@ -214,6 +214,8 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
                           ("These are not the caps of a focal stack: %" GST_PTR_FORMAT, caps), (nullptr));
         return FALSE;
     }
+    if (const auto settings = changed_settings(state))
+        state.depth.set_settings(*settings);
     state.depth.set_stack(info);
     state.has_caps = true;
     return TRUE;

@@ -25,6 +25,7 @@ void set_intrinsics(GstDepthInfo &depth, const CameraCalibration &camera)
 void StackDepth::stop()
 {
     engine_.reset();
+    coming_engine_ = {};
     device_.reset();
 }
 
@@ -32,19 +33,26 @@ void StackDepth::set_stack(const GstFocalStackInfo &stack)
 {
     stack_ = stack;
     engine_.reset();
+    coming_engine_ = std::async(std::launch::async, [device = device_, shape = stack_shape(stack_),
+                                                     parameters = settings_.parameters] {
+        return std::make_unique<FocusEngine>(device, shape, parameters);
+    });
 }
 
 void StackDepth::set_settings(const DepthSettings &settings)
 {
     settings_ = settings;
     engine_.reset();
+    coming_engine_ = {};
 }
 
 GstDepthInfo StackDepth::prepare(GstBuffer *stack, guint64 index)
 {
     if (!engine_) {
         translate_errors(*device_, [&] {
-            engine_ = std::make_unique<FocusEngine>(device_, stack_shape(stack_), settings_.parameters);
+            engine_ = coming_engine_.valid()
+                          ? coming_engine_.get()
+                          : std::make_unique<FocusEngine>(device_, stack_shape(stack_), settings_.parameters);
         });
         encoder_.reset();
     }

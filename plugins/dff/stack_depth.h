@@ -6,6 +6,7 @@
 #include "gstcl/depth_facts.h"
 #include "optics/camera_calibration.h"
 
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -18,9 +19,12 @@ public:
     void start(std::shared_ptr<Device> device) { device_ = std::move(device); }
     void stop();
 
-    /* Caps and settings of what comes from here on. */
-    void set_stack(const GstFocalStackInfo &stack);
+    /* Settings of what comes from here on. */
     void set_settings(const DepthSettings &settings);
+
+    /* Caps of what comes from here on. Their engine is made in a thread of its own, while the frames of the
+     * first stack still arrive: kernels take their time to be loaded, which a live source must not feel. */
+    void set_stack(const GstFocalStackInfo &stack);
     /* What the facts say of the camera. */
     void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
     const GstFocalStackInfo &stack() const { return stack_; }
@@ -44,6 +48,7 @@ private:
     std::shared_ptr<Device> device_;
     DepthSettings settings_;
     GstFocalStackInfo stack_{};
+    std::future<std::unique_ptr<FocusEngine>> coming_engine_; /* for stack_ and settings_ */
     std::unique_ptr<FocusEngine> engine_;
     std::optional<DepthEncoder> encoder_;
     PlanePositions positions_;
