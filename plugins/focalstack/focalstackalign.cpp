@@ -15,6 +15,9 @@
  * plane to plane, which is what depth from focus looks at. Size stays, so what moves in over the border is
  * the picture, reflected there. Planes that lie within 0.02 pixels of their place are copied.
  *
+ * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
+ * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.
+ *
  * A stack without times gets those of its caps' frame rate.
  *
  * ## Example pipeline
@@ -25,32 +28,36 @@
  */
 #include "focalstack/focalstackalign.h"
 
+#include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/stack_aligner.h"
 #include "focalstack/stack_buffer.h"
 #include "focalstack/stack_pictures.h"
 
 #include <optional>
+#include <stdexcept>
 
 GST_DEBUG_CATEGORY_STATIC(focalstackalign_debug);
 #define GST_CAT_DEFAULT focalstackalign_debug
 
 namespace {
 
-enum class AlignMode { Estimate };
+enum class AlignMode { Estimate, Calibration };
 
 struct FocalStackAlignState {
     /* Guarded by the sink pad's stream lock. */
     std::optional<dff::StackPool> pool;
     guint64 stacks_of_segment = 0;
+    std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
 
     /* Guarded by the object's lock. */
     AlignMode mode = AlignMode::Estimate;
+    std::string calibration_file;
     dff::AlignmentStatistics statistics;
     GstClockTime latency = 0;
 };
 
-enum { PROP_MODE = 1, PROP_STATS };
+enum { PROP_MODE = 1, PROP_CALIBRATION, PROP_STATS };
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
@@ -62,6 +69,8 @@ GType align_mode_get_type()
     static GType type;
     static const GEnumValue values[] = {
         {static_cast<int>(AlignMode::Estimate), "Found anew in the pictures of each stack", "estimate"},
+        {static_cast<int>(AlignMode::Calibration),
+         "From the file calibration, for rigs that always do the same", "calibration"},
         {0, nullptr, nullptr},
     };
     if (g_once_init_enter(&type))
@@ -104,6 +113,14 @@ std::vector<dff::PlaneAlignment> estimate(GstFocalStackAlign *self, const dff::S
         GST_WARNING_OBJECT(self, "the stack is left as it is: %s", exception.what());
         return std::vector<dff::PlaneAlignment>(planes);
     }
+}
+
+std::vector<dff::PlaneAlignment> find_alignments(GstFocalStackAlign *self, const dff::StackPictures &pictures,
+                                                 unsigned planes)
+{
+    const FocalStackAlignState &state = *self->state;
+    return state.calibration ? state.calibration->alignments(pictures.component(0, 0).size(), planes)
+                             : estimate(self, pictures, planes);
 }
 
 void undo_warps(const dff::StackPictures &from, const dff::StackPictures &to,
@@ -200,12 +217,16 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
         GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error->message), (nullptr));
         return GST_FLOW_ERROR;
     }
-    std::vector<dff::PlaneAlignment> alignments = estimate(self, *from, info.planes);
+    std::vector<dff::PlaneAlignment> alignments;
     try {
+        alignments = find_alignments(self, *from, info.planes);
         undo_warps(*from, *to, alignments);
     } catch (const cv::Exception &exception) {
         GST_ELEMENT_ERROR(self, STREAM, FAILED, ("The planes of the stack cannot be warped."),
                           ("%s", exception.what()));
+        return GST_FLOW_ERROR;
+    } catch (const std::runtime_error &mismatch) {
+        GST_ELEMENT_ERROR(self, STREAM, WRONG_TYPE, ("%s", mismatch.what()), (nullptr));
         return GST_FLOW_ERROR;
     }
     complete_time(info, self->state->stacks_of_segment++, output);
@@ -251,11 +272,35 @@ gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *quer
     return TRUE;
 }
 
+gboolean load_calibration(GstFocalStackAlign *self)
+{
+    FocalStackAlignState *state = self->state;
+    AlignMode mode;
+    std::string file;
+    {
+        const ObjectLock lock(self);
+        mode = state->mode;
+        file = state->calibration_file;
+    }
+    state->calibration.reset();
+    if (mode == AlignMode::Estimate)
+        return TRUE;
+    try {
+        state->calibration = dff::AlignmentCalibration::load(file);
+        return TRUE;
+    } catch (const std::runtime_error &error) {
+        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
+        return FALSE;
+    }
+}
+
 gboolean start(GstBaseTransform *base)
 {
-    const ObjectLock lock(base);
     FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(base)->state;
 
+    if (!load_calibration(GST_FOCAL_STACK_ALIGN(base)))
+        return FALSE;
+    const ObjectLock lock(base);
     state->stacks_of_segment = 0;
     state->statistics = {};
     state->latency = 0;
@@ -275,6 +320,10 @@ void set_property(GObject *object, guint id, const GValue *value, GParamSpec *sp
     case PROP_MODE:
         GST_FOCAL_STACK_ALIGN(object)->state->mode = static_cast<AlignMode>(g_value_get_enum(value));
         break;
+    case PROP_CALIBRATION:
+        GST_FOCAL_STACK_ALIGN(object)->state->calibration_file =
+            g_value_get_string(value) ? g_value_get_string(value) : "";
+        break;
     default:
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
     }
@@ -287,6 +336,9 @@ void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
     switch (id) {
     case PROP_MODE:
         g_value_set_enum(value, static_cast<int>(state->mode));
+        break;
+    case PROP_CALIBRATION:
+        g_value_set_string(value, state->calibration_file.c_str());
         break;
     case PROP_STATS:
         g_value_take_boxed(value, state->statistics.to_structure());
@@ -312,6 +364,13 @@ void install_properties(GObjectClass *object_class)
         g_param_spec_enum("mode", "Mode", "Where the warp of each plane comes from", align_mode_get_type(),
                           static_cast<int>(AlignMode::Estimate),
                           static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_READY)));
+    g_object_class_install_property(
+        object_class, PROP_CALIBRATION,
+        g_param_spec_string(
+            "calibration", "Calibration",
+            "File of mode=calibration (YAML): image_width, image_height, and planes, a list, nearest "
+            "first, of dx and dy (pixels), scale and rotation (degrees) as stats tells them",
+            "", static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_READY)));
     /**
      * GstFocalStackAlign:stats:
      *

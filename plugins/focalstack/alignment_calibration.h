@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "focalstack/stack_aligner.h"
+
+#include <string>
+
+namespace dff {
+
+/* The warp of each plane of a rig whose planes always lie the same, from a YAML file (OpenCV's FileStorage):
+ *
+ *   image_width, image_height  the size that dx and dy are for, in pixels
+ *   planes                     a list, nearest plane first, of
+ *     dx, dy                   where the centre of the middle plane's picture lies in this plane, in pixels
+ * right and down of its centre scale                    its zoom about the centre rotation degrees, clockwise
+ *
+ * which are what `stats` of focalstackalign tells after mode=estimate. */
+class AlignmentCalibration {
+public:
+    /* Throws std::runtime_error with a user's text that names the file and what is wrong with it. */
+    static AlignmentCalibration load(const std::string &file);
+
+    /* For stacks of this size. Throws std::runtime_error with a user's text if the file has another number of
+     * planes. */
+    std::vector<PlaneAlignment> alignments(cv::Size size, unsigned planes) const;
+
+private:
+    std::string file_;
+    cv::Size size_;
+    std::vector<PlaneWarp> warps_;
+};
+
+} // namespace dff
