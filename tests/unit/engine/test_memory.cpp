@@ -55,10 +55,12 @@ TEST_P(MemoryFormats, nothing_outside_of_the_pictures_is_touched)
         const GuardedMemory depth(67 * 65 * sizeof(uint16_t), flush);
         DepthOutputs outputs;
         outputs.depth = {depth.bytes().data(), 67 * sizeof(uint16_t)};
-        DepthParameters parameters;
-        parameters.method = Method::Paper;
-        FocusEngine engine(Device::open(""), shape, parameters);
-        engine.compute(view, outputs);
+        for (const Method method : {Method::Paper, Method::Volume}) {
+            DepthParameters parameters;
+            parameters.method = method;
+            FocusEngine engine(Device::open(""), shape, parameters);
+            engine.compute(view, outputs);
+        }
 
         const GuardedMemory picture(stack.memory.size() / 3, flush);
         const std::vector<RowLayout> layout = packed_layout({GetParam(), 67, 65, 1});

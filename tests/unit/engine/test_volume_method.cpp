@@ -69,6 +69,11 @@ Result compute(const TestStack &stack, bool with_maps = false)
     return result;
 }
 
+const RowLayout &rows_of(const TestStack &stack, size_t component, uint32_t z)
+{
+    return stack.layout[component * stack.shape.planes + z];
+}
+
 /* Mean error of the middle of each half, in planes. */
 double error_of(const Result &result, const StackShape &shape, float left, float right)
 {
@@ -137,6 +142,43 @@ TEST(VolumeMethod, what_has_no_texture_is_smooth_and_says_so)
         }
     EXPECT_LT(off, 0.5);
     EXPECT_EQ(result.sparse[size_t{20} * shape.width + 20], result.depth[size_t{20} * shape.width + 20]);
+}
+
+/* Takes planes one by one from each of two stacks in turn, as a rolling window does; then three at once. */
+TEST(VolumeMethod, a_rolling_window_has_the_depth_of_whole_stacks)
+{
+    const StackShape shape{PixelFormat::I420, 160, 121, 6};
+    const TestStack sweeps[2] = {two_halves(shape, 1.0f, 4.0f), two_halves(shape, 3.0f, 2.0f, 6.0f)};
+    TestStack window = sweeps[0];
+    StackView view = window.view();
+    for (uint32_t z = 0; z < shape.planes; z++)
+        view.identities.push_back(PlaneIdentity{0, z});
+    const auto take = [&](uint64_t sweep, uint32_t z) {
+        for (size_t c = 0; c < shape.components().size(); c++) {
+            const RowLayout &rows = rows_of(window, c, z);
+            std::copy_n(sweeps[sweep % 2].memory.begin() + static_cast<std::ptrdiff_t>(rows.offset),
+                        rows.stride * shape.components()[c].height,
+                        window.memory.begin() + static_cast<std::ptrdiff_t>(rows.offset));
+        }
+        view.identities[z] = PlaneIdentity{sweep, z};
+    };
+    DepthParameters parameters;
+    parameters.method = Method::Volume;
+    FocusEngine rolling(Device::open(""), shape, parameters);
+    std::vector<uint16_t> depth(size_t{shape.width} * shape.height);
+    DepthOutputs outputs;
+    outputs.depth = {std::as_writable_bytes(std::span(depth)).data(), shape.width * sizeof(uint16_t)};
+
+    for (const auto &planes : std::vector<std::vector<uint32_t>>{{}, {0}, {1}, {2}, {3, 4, 5}, {}}) {
+        for (const uint32_t z : planes)
+            take(1, z);
+        rolling.compute(view, outputs);
+        const Result whole = compute(window);
+        size_t other = 0;
+        for (size_t i = 0; i < depth.size(); i++)
+            other += std::abs(depth[i] - whole.depth[i]) > 600; /* 0.05 planes */
+        EXPECT_LE(other, depth.size() / 50) << "after " << planes.size() << " new planes";
+    }
 }
 
 TEST(VolumeMethod, a_scale_that_there_is_not_is_refused)
