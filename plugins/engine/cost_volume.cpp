@@ -6,14 +6,28 @@
 
 namespace dff {
 
+namespace {
+
+/* Rows of scratch, as the kernels count them. */
+size_t fine_rows(const LowShape &low)
+{
+    return low.strips() * static_cast<size_t>(8 + 1 + low.strip);
+}
+
+size_t coarse_rows(const LowShape &low)
+{
+    return low.strips() * static_cast<size_t>(low.planes) * 2 * static_cast<size_t>(low.strip + 10);
+}
+
+} // namespace
+
 CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), medians_(queue.allocate(2 * sizeof(cl_float))),
       coarse_medians_(queue.allocate(2 * sizeof(cl_float))), largest_range_(queue.allocate(sizeof(cl_float))),
       largest_coarse_range_(queue.allocate(sizeof(cl_float))), cost_(low.allocate_shorts(queue, low.planes)),
       guess_(low.allocate_shorts(queue, 1)), coarse_(low.allocate_shorts(queue, low.planes)),
-      scratch_(low.allocate_rows(queue, low.strips() * (low.strip + 9), sizeof(cl_short))),
-      coarse_scratch_(
-          low.allocate_rows(queue, low.strips() * low.planes * 2 * (low.strip + 10), sizeof(cl_float)))
+      scratch_(low.allocate_rows(queue, fine_rows(low), sizeof(cl_short))),
+      coarse_scratch_(low.allocate_rows(queue, coarse_rows(low), sizeof(cl_float)))
 {
     const Program program(queue.device(), "cost_volume");
     find_evidence_ = program.kernel("evidence");
@@ -23,6 +37,12 @@ CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
     add_coarse_cost_ = program.kernel("add_coarse_cost");
     for (cl::Buffer *picture : {&top_, &range_, &coarse_top_, &coarse_range_})
         *picture = low.allocate(queue, 1);
+}
+
+uint64_t CostVolume::scratch_bytes(const LowShape &low)
+{
+    return static_cast<uint64_t>(low.stride) *
+           (fine_rows(low) * sizeof(cl_short) + coarse_rows(low) * sizeof(cl_float));
 }
 
 void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise)

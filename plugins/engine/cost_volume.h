@@ -12,6 +12,9 @@ class CostVolume {
 public:
     CostVolume(CommandQueue &queue, const LowShape &low);
 
+    /* Of device memory, beside pictures. */
+    static uint64_t scratch_bytes(const LowShape &low);
+
     void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise);
 
     /* Low pictures short, their sides mirrored. */

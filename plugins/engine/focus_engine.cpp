@@ -11,7 +11,8 @@ namespace dff {
 
 namespace {
 
-std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackShape &shape)
+std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackShape &shape,
+                                  const DepthParameters &parameters)
 {
     uint64_t bytes = 0;
     for (const Component &component : shape.components())
@@ -26,6 +27,14 @@ std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackSha
                 std::to_string(device->largest_allocation() >> 20) +
                 " MiB at once, and at most half may be used: use smaller pictures, fewer planes or "
                 "another device");
+    const uint64_t work = parameters.method == Method::Volume ? VolumeMethod::memory(shape, parameters) : 0;
+    if (bytes + work > device->global_memory() / 2)
+        throw EngineError(EngineError::Kind::TooLarge,
+                          "method=volume needs " + std::to_string(work >> 20) + " MiB beside the stack's " +
+                              std::to_string(bytes >> 20) + "; the OpenCL device " + device->name() +
+                              " has " + std::to_string(device->global_memory() >> 20) +
+                              " MiB, and at most half may be used: use a larger scale, smaller pictures, "
+                              "fewer planes or another device");
     return device;
 }
 
@@ -43,8 +52,8 @@ std::unique_ptr<DepthMethod> make_method(CommandQueue &queue, const StackShape &
 
 FocusEngine::FocusEngine(std::shared_ptr<Device> device, const StackShape &shape,
                          const DepthParameters &parameters)
-    : device_(with_room(std::move(device), shape)), shape_(shape), queue_(device_), stack_(queue_, shape),
-      coder_(queue_, shape), method_(make_method(queue_, shape, parameters))
+    : device_(with_room(std::move(device), shape, parameters)), shape_(shape), queue_(device_),
+      stack_(queue_, shape), coder_(queue_, shape), method_(make_method(queue_, shape, parameters))
 {
 }
 

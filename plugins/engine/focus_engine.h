@@ -27,8 +27,8 @@ struct DepthOutputs {
 /* Depth from focal stacks of one shape. Not to be used from two threads at once. */
 class FocusEngine {
 public:
-    /* Throws EngineError: TooLarge before anything is allocated if the stack would need over half of the
-     * device's memory. */
+    /* Throws EngineError: TooLarge before anything is allocated if stack and method would need over half of
+     * the device's memory. */
     FocusEngine(std::shared_ptr<Device> device, const StackShape &shape, const DepthParameters &parameters);
 
     /* What the pixels of the depth maps mean from now on; DepthEncoder::index() until then. */

@@ -22,13 +22,6 @@ std::string build_options(PixelFormat format, const LowShape &low)
     return options;
 }
 
-/* SCRATCH_ROWS and PAD of focus_volume.cl, in bytes. */
-size_t scratch_bytes(const StackShape &shape, const LowShape &low)
-{
-    const size_t rows = 2 * (low.scale <= 4 ? 8 : 16) + 4;
-    return low.strips() * shape.planes * rows * (shape.width + 2 * 16) * sizeof(cl_ushort);
-}
-
 } // namespace
 
 FocusVolume::FocusVolume(CommandQueue &queue, const StackShape &shape, const LowShape &low)
@@ -39,6 +32,12 @@ FocusVolume::FocusVolume(CommandQueue &queue, const StackShape &shape, const Low
     if (has_byte_luma(shape.format))
         silent_ = program.kernel("focus_volume");
     prepared_ = program.kernel("focus_volume_prepared");
+}
+
+uint64_t FocusVolume::scratch_bytes(const StackShape &shape, const LowShape &low)
+{
+    const uint64_t rows = 2 * (low.scale <= 4 ? 8 : 16) + 4, pad = 16; /* SCRATCH_ROWS, PAD of the kernels */
+    return low.strips() * shape.planes * rows * (shape.width + 2 * pad) * sizeof(cl_ushort);
 }
 
 void FocusVolume::run(const StackBuffer &stack, const NoiseEstimate &noise)

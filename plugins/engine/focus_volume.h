@@ -12,6 +12,9 @@ class FocusVolume {
 public:
     FocusVolume(CommandQueue &queue, const StackShape &shape, const LowShape &low);
 
+    /* Of device memory, beside the volume. */
+    static uint64_t scratch_bytes(const StackShape &shape, const LowShape &low);
+
     /* Computes the planes that have changed, all if the noise has. */
     void run(const StackBuffer &stack, const NoiseEstimate &noise);
 

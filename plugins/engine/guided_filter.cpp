@@ -6,18 +6,27 @@ namespace dff {
 
 namespace {
 
-constexpr size_t scratch_rows = 4 + 4 * 8; /* a work-item; of guide_system() 9 */
+/* A work-item of filter_costs() keeps more rows than one of guide_system(), of which there are fewer. */
+size_t scratch_rows(const LowShape &low)
+{
+    return low.strips() * static_cast<size_t>(low.planes) * (4 + 4 * 8);
+}
 
 } // namespace
 
 GuidedFilter::GuidedFilter(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), system_(low.allocate(queue, 9)),
-      scratch_(low.allocate_rows(queue, low.strips() * low.planes * scratch_rows, sizeof(cl_float))),
+      scratch_(low.allocate_rows(queue, scratch_rows(low), sizeof(cl_float))),
       filtered_(low.allocate_shorts(queue, low.planes))
 {
     const Program program(queue.device(), "guided_filter");
     guide_system_ = program.kernel("guide_system");
     filter_costs_ = program.kernel("filter_costs");
+}
+
+uint64_t GuidedFilter::scratch_bytes(const LowShape &low)
+{
+    return scratch_rows(low) * static_cast<uint64_t>(low.stride) * sizeof(cl_float);
 }
 
 void GuidedFilter::run(const cl::Buffer &cost, const cl::Buffer &guide, const NoiseEstimate &noise)

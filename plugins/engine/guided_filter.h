@@ -12,6 +12,9 @@ class GuidedFilter {
 public:
     GuidedFilter(CommandQueue &queue, const LowShape &low);
 
+    /* Of device memory, beside pictures. */
+    static uint64_t scratch_bytes(const LowShape &low);
+
     /* The sides of cost and guide must be mirrored. */
     void run(const cl::Buffer &cost, const cl::Buffer &guide, const NoiseEstimate &noise);
 

@@ -12,6 +12,20 @@ VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const D
 {
 }
 
+uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &parameters)
+{
+    const LowShape low(shape, parameters.scale);
+    const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
+    const uint64_t planes = shape.planes;
+    const uint64_t pictures = 10 * planes + 5 + 2 * 26; /* of shorts; one of floats is two */
+    const uint64_t pixels = uint64_t{shape.width} * shape.height;
+    const bool is_interleaved_or_16 =
+        shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;
+    const uint64_t motion = pixels * (is_interleaved_or_16 ? planes + 1 : 1);
+    return low.height * row * pictures + CostVolume::scratch_bytes(low) + GuidedFilter::scratch_bytes(low) +
+           FocusVolume::scratch_bytes(shape, low) + pixels * (2 * sizeof(cl_ushort) + 1) + motion;
+}
+
 void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted)
 {
     noise_.run(stack);

@@ -15,6 +15,9 @@ class VolumeMethod : public DepthMethod {
 public:
     VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters);
 
+    /* Bytes of device memory it takes beside the stack, with all maps wanted. */
+    static uint64_t memory(const StackShape &shape, const DepthParameters &parameters);
+
     void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) override;
 
     const cl::Buffer &depth() const override { return upsampling_.depth(); }

@@ -23,7 +23,14 @@ public:
     const Device &device() const { return *device_; }
     cl::CommandQueue &commands() { return queue_; }
 
-    cl::Buffer allocate(size_t bytes) const { return {device_->context(), CL_MEM_READ_WRITE, bytes}; }
+    cl::Buffer allocate(size_t bytes)
+    {
+        allocated_ += bytes;
+        return {device_->context(), CL_MEM_READ_WRITE, bytes};
+    }
+
+    /* Bytes of all buffers so far, given back or not. */
+    uint64_t allocated() const { return allocated_; }
 
     /* Kernels run from here on belong to the stage `name`. */
     void begin_stage(const char *name) { stages_.emplace_back(name, std::vector<cl::Event>()); }
@@ -65,6 +72,7 @@ private:
 
     std::shared_ptr<Device> device_;
     cl::CommandQueue queue_;
+    uint64_t allocated_ = 0;
     std::vector<std::pair<std::string, std::vector<cl::Event>>> stages_;
 };
 

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/aif_composer.h"
 #include "engine/engine_error.h"
+#include "engine/volume_method.h"
 #include "test_stack.h"
 
 #include <algorithm>
@@ -60,6 +61,39 @@ TEST(Limits, too_large_a_stack_is_refused_before_anything_is_allocated)
     } catch (const EngineError &error) {
         EXPECT_EQ(error.kind(), EngineError::Kind::TooLarge);
         EXPECT_NE(std::string(error.what()).find("16384 MiB"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Limits, what_the_method_needs_beside_the_stack_counts)
+{
+    DepthParameters parameters;
+    parameters.scale = 2;
+    try {
+        const FocusEngine engine(Device::open(""), {PixelFormat::Gray8, 4096, 4096, 64}, parameters);
+        FAIL() << "1 GiB of stack, but more than 4 to compute its depth, on a device of 8";
+    } catch (const EngineError &error) {
+        EXPECT_EQ(error.kind(), EngineError::Kind::TooLarge);
+        EXPECT_NE(std::string(error.what()).find("use a larger scale"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Limits, volume_states_the_memory_it_takes)
+{
+    for (const auto &[format, scale] : {std::pair(PixelFormat::I420, 4u), {PixelFormat::Bgr, 2u}}) {
+        const StackShape shape{format, 640, 480, 6};
+        DepthParameters parameters;
+        parameters.scale = scale;
+        CommandQueue queue(Device::open(""));
+        const TestStack stack(shape);
+        StackBuffer buffer(queue, shape);
+        DepthCoder coder(queue, shape);
+        const uint64_t before = queue.allocated();
+        VolumeMethod method(queue, shape, parameters);
+        buffer.assign(stack.view());
+        method.run(buffer, coder, {.sparse = true, .confidence = true, .motion = true});
+        queue.finish();
+        const auto taken = static_cast<double>(queue.allocated() - before);
+        EXPECT_NEAR(static_cast<double>(VolumeMethod::memory(shape, parameters)), taken, 0.03 * taken);
     }
 }
 
