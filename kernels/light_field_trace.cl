@@ -6,8 +6,10 @@
  * x = origin + slope q. It comes from the viewer, from above, and walks pixel by pixel along its longer axis until it is
  * below the surface: near surfaces win, and between two pixels the crossing is found by linear interpolation. Where the
  * surface steps up by more than `step` there is none between the pixels: the ray goes behind the near one and looks at the
- * hidden layer until that stops it or it comes out again.
+ * hidden layer until that stops it or it comes out again; within TOUCH pixels of the near one's place it still meets that.
  */
+#define TOUCH 1e-3f
+
 typedef struct {
     __global const uchar4 *color, *hidden_color;
     __global const float *height, *hidden_height;
@@ -51,7 +53,7 @@ inline float4 trace(const Layers *layers, float2 origin, float2 slope)
         const float height = layers->height[i];
         if (q > height) {
             behind = false;
-        } else if (behind || (k > 0 && height - below > layers->step)) {
+        } else if (behind || (k > 0 && height - below > layers->step && (height - q) * fabs(lean) > TOUCH)) {
             behind = true;
             if (q <= layers->hidden_height[i] || k == steps)
                 return layers->fill ? color_at(layers->hidden_color, layers->size, origin + slope * layers->hidden_height[i])

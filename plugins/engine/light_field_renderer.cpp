@@ -23,6 +23,16 @@ cl_int channels_of(PixelFormat format)
     return format == PixelFormat::Rgb || format == PixelFormat::Bgr ? 3 : 4;
 }
 
+bool in_rows(const Device &device)
+{
+    return device.kernel_style() == KernelStyle::Tiles;
+}
+
+bool is_of_views(LightFieldLayout layout)
+{
+    return layout == LightFieldLayout::Quilt || layout == LightFieldLayout::Views;
+}
+
 cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
 {
     switch (layout) {
@@ -33,7 +43,8 @@ cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
     case LightFieldLayout::Elemental:
         return Program(device, "light_field_panel").kernel("elemental");
     default:
-        return Program(device, "light_field_views").kernel("views");
+        return in_rows(device) ? Program(device, "light_field_rows").kernel("view_rows")
+                               : Program(device, "light_field_views").kernel("views");
     }
 }
 
@@ -140,31 +151,36 @@ void LightFieldRenderer::trace(const Output &output)
         trace_elemental(index, output);
     else
         trace_views(index, output);
+    if (is_of_views(parameters_.layout) && in_rows(*device_))
+        queue_.run_groups(kernel_, {parameters_.columns, shape_.output.height});
+    else
+        queue_.run(kernel_, {shape_.output.width, shape_.output.height});
 }
 
 template <typename... Arguments>
-void LightFieldRenderer::run_trace(cl_uint index, const Output &output, const Arguments &...arguments)
+void LightFieldRenderer::set_trace_arguments(cl_uint index, const Output &output,
+                                             const Arguments &...arguments)
 {
-    (kernel_.setArg(index++, arguments), ...);
-    queue_.run_from(index, kernel_, {shape_.output.width, shape_.output.height}, to_float2(geometry_.first),
-                    to_float2(geometry_.scale), output.rows, output.stride, channels_of(shape_.format),
-                    to_int2({shape_.output.width, shape_.output.height}));
+    const auto set = [&](const auto &...all) { (kernel_.setArg(index++, all), ...); };
+    set(arguments...);
+    set(to_float2(geometry_.first), to_float2(geometry_.scale), output.rows, output.stride,
+        channels_of(shape_.format), to_int2({shape_.output.width, shape_.output.height}));
 }
 
 void LightFieldRenderer::trace_views(cl_uint index, const Output &output)
 {
-    run_trace(index, output, slopes_, to_int2({parameters_.columns, rows_of_views(parameters_)}),
-              to_int2(geometry_.view));
+    set_trace_arguments(index, output, slopes_, to_int2({parameters_.columns, rows_of_views(parameters_)}),
+                        to_int2(geometry_.view));
 }
 
 void LightFieldRenderer::trace_lenticular(cl_uint index, const Output &output)
 {
     const LenticularSheet &sheet = parameters_.sheet;
     const bool descending = is_blue_first(shape_.format) != sheet.flip_subpixels;
-    run_trace(index, output, static_cast<cl_float>(sheet.pitch), static_cast<cl_float>(sheet.tilt),
-              static_cast<cl_float>(sheet.center), static_cast<cl_float>(parameters_.view_cone),
-              descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}},
-              cl_int4{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}});
+    set_trace_arguments(index, output, static_cast<cl_float>(sheet.pitch), static_cast<cl_float>(sheet.tilt),
+                        static_cast<cl_float>(sheet.center), static_cast<cl_float>(parameters_.view_cone),
+                        descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}},
+                        cl_int4{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}});
 }
 
 void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
@@ -172,9 +188,10 @@ void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
     const LensArray &lenses = parameters_.lenses;
     const glm::dmat2 to_lens = to_lens_matrix(lenses);
     const glm::dvec2 middle(shape_.output.width / 2.0, shape_.output.height / 2.0);
-    run_trace(index, output, to_float2(middle + lenses.center), rows_of(to_lens),
-              rows_of(glm::inverse(to_lens)), static_cast<cl_float>(lens_gap(parameters_)),
-              static_cast<cl_int>(lenses.grid == LensGrid::Hexagonal), static_cast<cl_int>(lenses.flip));
+    set_trace_arguments(index, output, to_float2(middle + lenses.center), rows_of(to_lens),
+                        rows_of(glm::inverse(to_lens)), static_cast<cl_float>(lens_gap(parameters_)),
+                        static_cast<cl_int>(lenses.grid == LensGrid::Hexagonal),
+                        static_cast<cl_int>(lenses.flip));
 }
 
 void LightFieldRenderer::copy_rgbd(const ColorAndDepth &pictures, const Output &output)

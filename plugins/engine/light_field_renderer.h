@@ -64,7 +64,7 @@ private:
     void trace_elemental(cl_uint index, const Output &output);
     void copy_rgbd(const ColorAndDepth &pictures, const Output &output);
     template <typename... Arguments>
-    void run_trace(cl_uint index, const Output &output, const Arguments &...arguments);
+    void set_trace_arguments(cl_uint index, const Output &output, const Arguments &...arguments);
 
     std::shared_ptr<Device> device_;
     LightFieldShape shape_;

@@ -40,13 +40,7 @@ public:
     template <typename... Arguments>
     void run(cl::Kernel &kernel, const cl::NDRange &size, const Arguments &...arguments)
     {
-        run_from(0, kernel, size, arguments...);
-    }
-
-    /* The same for a kernel whose arguments before `index` are set. */
-    template <typename... Arguments>
-    void run_from(cl_uint index, cl::Kernel &kernel, const cl::NDRange &size, const Arguments &...arguments)
-    {
+        cl_uint index = 0;
         (kernel.setArg(index++, arguments), ...);
         enqueue(kernel, size, {group_width, 1, 1});
     }

@@ -54,10 +54,16 @@ struct Picture {
     std::vector<uint16_t> depth;
 };
 
-std::vector<uint8_t> render(const Picture &picture, PictureSize output,
-                            const LightFieldParameters &parameters)
+/* The default device, whatever it is, with kernels of one style. */
+std::shared_ptr<Device> device_with(KernelStyle style)
 {
-    LightFieldRenderer renderer(Device::open(""), {PixelFormat::Rgb, picture.size, output}, parameters);
+    return std::make_shared<Device>(Device::open("")->device(), style);
+}
+
+std::vector<uint8_t> render(const Picture &picture, PictureSize output,
+                            const LightFieldParameters &parameters, KernelStyle style = KernelStyle::Tiles)
+{
+    LightFieldRenderer renderer(device_with(style), {PixelFormat::Rgb, picture.size, output}, parameters);
     std::vector<uint8_t> result(size_t{output.width} * output.height * 3);
     renderer.render({std::as_bytes(std::span(picture.color)), 3 * size_t{picture.size.width}},
                     {std::as_bytes(std::span(picture.depth)), 2 * size_t{picture.size.width}},
@@ -69,9 +75,9 @@ std::vector<uint8_t> render(const Picture &picture, PictureSize output,
  * side. */
 template <typename Ray>
 double share_that_differs(const Picture &picture, PictureSize output, const LightFieldParameters &parameters,
-                          Ray ray)
+                          Ray ray, KernelStyle style = KernelStyle::Tiles)
 {
-    const std::vector<uint8_t> found = render(picture, output, parameters);
+    const std::vector<uint8_t> found = render(picture, output, parameters, style);
     const LightFieldGeometry geometry(parameters, picture.size, output);
     const TwinLayers twin(geometry, picture.colors(), picture.positions());
     size_t different = 0;
@@ -98,18 +104,18 @@ TEST(Renderer, a_quilt_agrees_with_its_twin)
     parameters.columns = 3;
     parameters.rows = 2;
     parameters.depth_gain = 0.4;
-    for (const bool fill : {true, false}) {
-        parameters.fill = fill;
-        const double share =
-            share_that_differs(picture, {3 * 90, 2 * 60}, parameters,
-                               [](const LightFieldGeometry &geometry, glm::dvec2 pixel, int) {
-                                   const glm::ivec2 tile = glm::ivec2(pixel) / glm::ivec2(90, 60);
-                                   const unsigned view = static_cast<unsigned>((1 - tile.y) * 3 + tile.x);
-                                   return Ray{geometry.start(pixel - glm::dvec2(tile * glm::ivec2(90, 60))),
-                                              {std::tan((view / 5.0 - 0.5) * 40.0 / 180.0 * M_PI), 0.0}};
-                               });
-        EXPECT_LT(share, 2e-3) << "fill " << fill;
-    }
+    const auto ray = [](const LightFieldGeometry &geometry, glm::dvec2 pixel, int) {
+        const glm::ivec2 tile = glm::ivec2(pixel) / glm::ivec2(90, 60);
+        const unsigned view = static_cast<unsigned>((1 - tile.y) * 3 + tile.x);
+        return Ray{geometry.start(pixel - glm::dvec2(tile * glm::ivec2(90, 60))),
+                   {std::tan((view / 5.0 - 0.5) * 40.0 / 180.0 * M_PI), 0.0}};
+    };
+    for (const KernelStyle style : {KernelStyle::Pixels, KernelStyle::Tiles})
+        for (const bool fill : {true, false}) {
+            parameters.fill = fill;
+            EXPECT_LT(share_that_differs(picture, {3 * 90, 2 * 60}, parameters, ray, style), 2e-3)
+                << "fill " << fill << " tiles " << (style == KernelStyle::Tiles);
+        }
 }
 
 TEST(Renderer, a_lenticular_panel_agrees_with_its_twin)
@@ -219,9 +225,12 @@ TEST(Renderer, near_things_hide_far_ones_and_holes_show_the_background)
     parameters.columns = 2;
     parameters.depth_gain = 0.2;
     parameters.view_cone = 2.0 * std::atan(0.5); /* the thing moves by 5, the ground by -5 */
-    for (const bool fill : {true, false}) {
+    for (const auto &[fill, style] : {std::pair(true, KernelStyle::Tiles),
+                                      {false, KernelStyle::Tiles},
+                                      {true, KernelStyle::Pixels},
+                                      {false, KernelStyle::Pixels}}) {
         parameters.fill = fill;
-        const std::vector<uint8_t> views = render(picture, {200, 4}, parameters);
+        const std::vector<uint8_t> views = render(picture, {200, 4}, parameters, style);
         for (unsigned x = 0; x < 100; x++) {
             const uint8_t *left = &views[(200 + x) * 3], *right = &views[(200 + 100 + x) * 3];
             EXPECT_EQ(left[0] == 255, x >= 45 && x < 65) << x;
@@ -242,6 +251,21 @@ TEST(Renderer, depth_of_zero_takes_the_farther_neighbour)
     LightFieldParameters parameters;
     parameters.columns = parameters.rows = 2;
     EXPECT_EQ(render(picture, {120, 4}, parameters), render(filled, {120, 4}, parameters));
+}
+
+TEST(Renderer, what_is_left_over_of_a_quilt_is_black)
+{
+    Picture picture({60, 20});
+    std::fill(picture.color.begin(), picture.color.end(), uint8_t{200});
+    LightFieldParameters parameters;
+    parameters.columns = 7;
+    parameters.rows = 3;
+    for (const KernelStyle style : {KernelStyle::Pixels, KernelStyle::Tiles}) {
+        const std::vector<uint8_t> quilt = render(picture, {75, 32}, parameters, style);
+        for (size_t y = 0; y < 32; y++)
+            for (size_t x = 0; x < 75; x++)
+                ASSERT_EQ(quilt[(y * 75 + x) * 3], x < 70 && y >= 2 ? 200 : 0) << x << "," << y;
+    }
 }
 
 TEST(Renderer, without_any_depth_all_views_are_the_picture)

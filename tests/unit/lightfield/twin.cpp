@@ -120,7 +120,8 @@ glm::dvec3 TwinLayers::trace(glm::dvec2 origin, glm::dvec2 slope, bool fill) con
         const glm::ivec2 p = glm::clamp(glm::ivec2(glm::round(place)), glm::ivec2(0), size_ - 1);
         const double here = height(p.x, p.y);
         const double hidden = hidden_height_[static_cast<size_t>(p.y * size_.x + p.x)];
-        behind = q <= here && (behind || (i != first && here - before > step_));
+        behind = q <= here &&
+                 (behind || (i != first && here - before > step_ && (here - q) * std::abs(lean) > 1e-3));
         if (behind && (q <= hidden || i == last))
             return fill ? sample(hidden_color_, origin + slope * hidden) : glm::dvec3(0.0);
         if (!behind && q <= here) {
