@@ -69,14 +69,17 @@ inline float4 trace(const Layers *layers, float2 origin, float2 slope)
     return color_at(layers->color, layers->size, origin + slope * least);
 }
 
+/* Rounds values of 0..255. */
 inline void put_color(__global uchar *pixel, int channels, float4 color)
 {
-    const uchar4 value = convert_uchar4_sat_rte(color);
+    const uchar4 value = convert_uchar4(color + 0.5f);
+    if (channels == 4) {
+        *(__global uchar4 *)pixel = (uchar4)(value.xyz, 255);
+        return;
+    }
     pixel[0] = value.x;
     pixel[1] = value.y;
     pixel[2] = value.z;
-    if (channels == 4)
-        pixel[3] = 255;
 }
 
 /* The arguments that every kernel takes, and the layers of them. */

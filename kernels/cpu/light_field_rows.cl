@@ -11,8 +11,9 @@
  * its ends the layers' row goes on with its last pixels. */
 typedef struct {
     const Layers *layers;
-    size_t start; /* of the row of heights */
-    float y, slope;
+    size_t start;        /* of the row of heights */
+    size_t upper, lower; /* of the rows of colours, `share` of the lower one */
+    float share, slope;
     int last, mirror;
 } Row;
 
@@ -32,10 +33,24 @@ inline bool is_step(const Row *row, int i)
     return row->layers->height[index_of(row, i)] - row->layers->height[index_of(row, i + 1)] > row->layers->step;
 }
 
-inline float4 look(const Row *row, __global const uchar4 *picture, float x)
+inline float4 mix_pixels(__global const uchar4 *row, int a, int b, float t)
 {
-    const float2 point = (float2)(row->mirror ? row->last - x : x, row->y);
-    return color_at(picture, row->layers->size, point);
+    return mix(convert_float4(row[a]), convert_float4(row[b]), t);
+}
+
+/* As color_at(). */
+inline float4 look(const Row *row, __global const uchar4 *picture, float s)
+{
+    const float x = clamp(row->mirror ? row->last - s : s, 0.0f, (float)row->last);
+    const int a = (int)x, b = min(a + 1, row->last);
+    const float4 upper = mix_pixels(picture + row->upper, a, b, x - a);
+    return row->share == 0.0f ? upper : mix(upper, mix_pixels(picture + row->lower, a, b, x - a), row->share);
+}
+
+inline int round_up(float value)
+{
+    const int truncated = (int)value;
+    return truncated + (truncated < value);
 }
 
 /* What is seen at s through the step between i and i + 1, behind the near pixel i: see trace(). */
@@ -72,8 +87,8 @@ inline void paint(const Row *row, float first, float scale, int width, __global 
     float place = place_of(row, begin);
     for (int i = begin; i < end; i++) {
         const float next = place_of(row, i + 1);
-        const int from = max((int)ceil((place - first) * per_layer), 0);
-        const int to = min((int)ceil((next - first) * per_layer), width);
+        const int from = max(round_up((place - first) * per_layer), 0);
+        const int to = min(round_up((next - first) * per_layer), width);
         if (from < to) {
             const bool torn = is_step(row, i);
             const float stretch = 1.0f / (next - place);
@@ -106,13 +121,15 @@ __kernel void view_rows(LAYERS, __global const float *slopes, int2 columns_rows,
     const float slope = slopes[row_of_views * columns_rows.x + column];
     const int view_y = view.y - 1 - (output_size.y - 1 - y - row_of_views * view.y);
     const int last = size.x - 1, mirror = slope < 0.0f;
-    const float point_y = first.y + scale.y * view_y;
-    const size_t start = (size_t)clamp(convert_int_rte(point_y), 0, size.y - 1) * size.x;
+    const float point_y = clamp(first.y + scale.y * view_y, 0.0f, size.y - 1.0f);
+    const int above = (int)point_y, below = min(above + 1, size.y - 1);
+    const size_t start = (size_t)convert_int_rte(point_y) * size.x;
     /* A view without parallax has no steps to look behind. */
     const bool flat = fabs(slope) * (heights.y - heights.x) < 1e-3f;
     Layers seen = layers;
     seen.step = flat ? INFINITY : step;
-    const Row row = {&seen, start, point_y, flat ? 0.0f : fabs(slope), last, mirror};
+    const Row row = {&seen, start, (size_t)above * size.x, (size_t)below * size.x, point_y - above,
+                     flat ? 0.0f : fabs(slope), last, mirror};
     const float first_x = mirror ? last - (first.x + scale.x * (view.x - 1)) : first.x;
     paint(&row, first_x, scale.x, view.x, line + column * view.x * channels, channels);
 }

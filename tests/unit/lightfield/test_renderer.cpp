@@ -150,8 +150,8 @@ TEST(Renderer, elemental_images_agree_with_their_twin)
             parameters.lenses.flip = flip;
             /* The nearest of all lenses, each placed by hand. */
             std::vector<glm::dvec2> lenses;
-            for (int row = -30; row <= 30; row++)
-                for (int column = -30; column <= 30; column++) {
+            for (int row = -14; row <= 14; row++)
+                for (int column = -14; column <= 14; column++) {
                     const bool hex = grid == LensGrid::Hexagonal;
                     const glm::dvec2 p(7.3 * (column + (hex && row % 2 != 0 ? 0.5 : 0.0)),
                                        7.3 * row * (hex ? std::sqrt(0.75) : 1.0));
