@@ -77,9 +77,20 @@ class Elements(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder)
             make_scene(scene)
-            found = evaluate.score_scene(scene, '', 'moderate', 2)
+            found = evaluate.score_scene(evaluate.FileScene(scene), evaluate.Conditions('', 'moderate', 0, 2))
         self.assertGreater(found['psnr'], 15)
         self.assertGreater(found['aif_psnr'], 25)
+
+    def test_made_scenes_know_their_depth(self):
+        found = evaluate.score_scene(evaluate.MadeScene(5, (320, 240)), evaluate.Conditions('', 'none', 0, 2))
+        self.assertGreater(found['psnr'], 15)
+        self.assertNotIn('aif_psnr', found)
+
+    def test_truth_follows_the_middle_plane(self):
+        picture = np.tile(np.arange(1001, dtype=np.uint16), (3, 1))
+        moved = evaluate.as_middle_plane(picture, 0.9, evaluate.cv2.INTER_NEAREST)
+        self.assertEqual(moved[1, 500], 500)
+        self.assertAlmostEqual((moved[1, 600] - 500) * (1 + 0.9 / 18), 100, delta=1)
 
 
 if __name__ == '__main__':
