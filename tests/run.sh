@@ -83,7 +83,7 @@ say "Testing the sanitizer build"
 meson_tests build-sanitize
 
 say "Checking the format of the code"
-check "clang-format" bash -c "git ls-files 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
+check "clang-format" bash -c "git ls-files 'pipelines/rtsp/*.cpp' 'pipelines/rtsp/*.h' 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
     xargs clang-format --dry-run -Werror"
 
 say "Checking the code with clang-tidy"

@@ -97,7 +97,7 @@ void read_accounts(ServerOptions &options, const char *path)
     g_auto(GStrv) users = nullptr;
     if (g_key_file_load_from_file(file, path, G_KEY_FILE_NONE, &error))
         users = g_key_file_get_keys(file, account_group, nullptr, &error);
-    if (error)
+    if (!users)
         throw std::invalid_argument(std::string("Cannot read the accounts of ") + path + ": " +
                                     error->message);
     for (char **user = users; *user; user++) {
