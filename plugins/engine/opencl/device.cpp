@@ -81,7 +81,10 @@ std::string Device::name() const
 
 std::shared_ptr<Device> Device::open(const std::string &wish)
 {
-    static std::mutex mutex; /* guards the list of open devices; nothing else is locked under it */
+    /* Guards the list of open devices, and PoCL while it looks for its devices: a second thread that asks
+     * meanwhile is told of one without memory. Nothing else is locked under it. */
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
     /* Never destroyed: at the process's end the driver may have gone before it. */
     static auto &open_devices = *new std::map<cl_device_id, std::shared_ptr<Device>>;
 
@@ -93,7 +96,6 @@ std::shared_ptr<Device> Device::open(const std::string &wish)
             "have their own; clinfo lists what is found");
 
     const cl::Device chosen = choose(devices, wish);
-    const std::lock_guard lock(mutex);
     std::shared_ptr<Device> &device = open_devices[chosen.get()];
     if (!device) {
         try {
