@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <sstream>
 #include <sys/resource.h>
 
 #ifdef HAVE_XIMGPROC
@@ -146,7 +147,13 @@ struct Case {
 class Report {
 public:
     Report(const char *markdown, const char *json) : markdown_(markdown), json_(json) { json_ << "[\n"; }
-    ~Report() { json_ << "\n]\n"; }
+    ~Report()
+    {
+        json_ << "\n]\n";
+        markdown_ << "\n## Linearity\n\nMilliseconds a million pixels and plane; flat is linear.\n\n"
+                  << "| | N | paper and AIF | volume and AIF |\n|---|---|---|---|\n"
+                  << linearity_.str();
+    }
 
     void add(const Case &c, const std::vector<Row> &rows, double memory_mib)
     {
@@ -163,11 +170,26 @@ public:
                           << rounded(median(times) / copy) << " | | |\n";
             json_row(c, row, wall, cpu, copy, memory_mib);
         }
+        compare(c, rows);
         markdown_.flush();
     }
 
 private:
     static double rounded(double value) { return std::round(value * 100.0) / 100.0; }
+
+    /* Rows 1 and 2 are method=paper and method=volume, the others' ways come after. */
+    void compare(const Case &c, const std::vector<Row> &rows)
+    {
+        const double paper = median(rows[1].wall), volume = median(rows[2].wall);
+        const double megapixel_planes = 1e-6 * c.width * c.height * c.planes;
+        linearity_ << "| " << c.width << "x" << c.height << " | " << c.planes << " | "
+                   << rounded(paper / megapixel_planes) << " | " << rounded(volume / megapixel_planes)
+                   << " |\n";
+        for (size_t i = 3; i < rows.size(); i++)
+            markdown_ << (i == 3 ? "\n" : "") << "Times as fast as \"" << rows[i].name
+                      << "\" alone: method=paper " << rounded(median(rows[i].wall) / paper)
+                      << ", method=volume " << rounded(median(rows[i].wall) / volume) << ", both with AIF.\n";
+    }
 
     void json_row(const Case &c, const Row &row, double wall, double cpu, double copy, double memory_mib)
     {
@@ -182,6 +204,7 @@ private:
     }
 
     std::ofstream markdown_, json_;
+    std::ostringstream linearity_;
     bool first_ = true;
 };
 
@@ -255,7 +278,8 @@ int main(int count, char **arguments)
             if (!quick || width == 1920)
                 cases.push_back({width, height, planes, true});
     if (!quick)
-        for (const auto &[width, height] : {std::pair(640u, 480u), {1920u, 1080u}})
+        for (const auto &[width, height] :
+             {std::pair(640u, 480u), {1280u, 720u}, {1920u, 1080u}, {3840u, 2160u}})
             for (const uint32_t planes : {4u, 16u, 32u})
                 cases.push_back({width, height, planes, false});
 

@@ -4,7 +4,7 @@
 #
 # run.sh [--quick] [FOLDER]: times a stack from luma to all-in-focus picture, stage by stage, beside a memory copy and
 # other ways to the same end. Writes bench.md, bench.json and bench.svg to FOLDER (bench-results). Ratios hold on a busy
-# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds.
+# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds. live.py beside it is the live proof.
 set -euo pipefail
 quick=()
 if [ "${1:-}" = --quick ]; then
@@ -18,11 +18,19 @@ install_missing "${run_packages[@]}" "${build_packages[@]}" "${test_packages[@]}
 
 mkdir -p "$folder" build-release
 [ -f build-release/build.ninja ] || meson setup build-release --buildtype=release
-ninja -C build-release tests/bench/dff-bench
+ninja -C build-release tests/bench/dff-bench tests/bench/dff-first-stack
 
 say "Measuring"
 enter build-release
 build-release/tests/bench/dff-bench "$folder/bench.md" "$folder/bench.json" "${quick[@]}"
+{
+    printf '\n## First stack after start, warm kernel caches\n\n'
+    for method in paper volume; do
+        build-release/tests/bench/dff-first-stack $method >/dev/null
+        build-release/tests/bench/dff-first-stack $method
+        echo
+    done
+} >>"$folder/bench.md"
 cat "$folder/bench.md"
 
 python=build-release/bench-python/bin/python

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling]: a live simulated
+camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown how many stacks
+were late or dropped, and how long after its last plane a stack's depth left. Run it in `meson devenv -C build`, on a
+machine that has nothing else to do; five minutes (--seconds 300) are the proof, ten seconds a trial."""
+import argparse
+import collections
+import time
+
+import gi
+
+gi.require_version("Gst", "1.0")
+from gi.repository import Gst
+
+BUCKET_MS = 5
+
+
+def pipeline_text(options):
+    width, height = options.size.split("x")
+    frames = int(options.seconds * options.rate * options.planes)
+    return (
+        f"lenssweeptestsrc name=camera is-live=true planes={options.planes} rate={options.rate} num-buffers={frames} ! "
+        f"video/x-raw,format=I420,width={width},height={height} ! queue ! "
+        f"focalstackmux name=mux window={options.window} ! tee name=s  "
+        f"s. ! queue max-size-bytes=0 ! dffdepth name=depth method={options.method} ! tee name=d  "
+        "d. ! queue ! picture.depth  s. ! queue max-size-bytes=0 ! picture.stack  "
+        "aifcompose name=picture ! queue ! fakesink name=sink sync=true qos=true max-lateness=20000000  "
+        "d. ! queue ! fakesink sync=false async=false"
+    )
+
+
+class Latency:
+    """From the arrival of a stack's last plane at the mux to its depth leaving dffdepth. The k-th depth belongs to the
+    k-th stack: dffdepth never drops."""
+
+    def __init__(self, pipeline, planes, rolling):
+        self.planes, self.rolling = planes, rolling
+        self.frames = 0
+        self.arrived = collections.deque()
+        self.milliseconds = []
+        probe = Gst.PadProbeType.BUFFER
+        pipeline.get_by_name("mux").get_static_pad("sink").add_probe(probe, self.frame_arrives)
+        pipeline.get_by_name("depth").get_static_pad("src").add_probe(probe, self.depth_leaves)
+
+    def frame_arrives(self, *_):
+        self.frames += 1
+        complete = self.frames >= self.planes if self.rolling else self.frames % self.planes == 0
+        if complete:
+            self.arrived.append(time.monotonic())
+        return Gst.PadProbeReturn.OK
+
+    def depth_leaves(self, *_):
+        if self.arrived:
+            self.milliseconds.append(1e3 * (time.monotonic() - self.arrived.popleft()))
+        return Gst.PadProbeReturn.OK
+
+    def print(self):
+        if not self.milliseconds:
+            print("No depth has left.")
+            return
+        ordered = sorted(self.milliseconds)
+        at = lambda share: ordered[min(int(share * len(ordered)), len(ordered) - 1)]
+        print(f"\nLast plane's arrival to depth, ms: median {at(0.5):.1f}, 95 % {at(0.95):.1f}, "
+              f"99 % {at(0.99):.1f}, longest {ordered[-1]:.1f}, the first {self.milliseconds[0]:.1f}\n")
+        print("| ms | stacks |\n|---|---|")
+        buckets = collections.Counter(int(value // BUCKET_MS) for value in ordered)
+        for bucket in range(min(buckets), max(buckets) + 1):
+            if buckets[bucket]:
+                print(f"| {bucket * BUCKET_MS} to {(bucket + 1) * BUCKET_MS} | {buckets[bucket]} |")
+
+
+def run(pipeline):
+    bus = pipeline.get_bus()
+    pipeline.set_state(Gst.State.PLAYING)
+    while True:
+        message = bus.timed_pop_filtered(
+            Gst.CLOCK_TIME_NONE, Gst.MessageType.EOS | Gst.MessageType.ERROR | Gst.MessageType.LATENCY)
+        if message.type == Gst.MessageType.LATENCY:
+            pipeline.recalculate_latency()
+        elif message.type == Gst.MessageType.ERROR:
+            error, _ = message.parse_error()
+            raise SystemExit(error.message)
+        else:
+            return
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=300)
+    parser.add_argument("--method", default="volume")
+    parser.add_argument("--size", default="1920x1080")
+    parser.add_argument("--planes", type=int, default=6)
+    parser.add_argument("--rate", type=int, default=26)
+    parser.add_argument("--window", default="sweep")
+    options = parser.parse_args()
+
+    Gst.init(None)
+    pipeline = Gst.parse_launch(pipeline_text(options))
+    latency = Latency(pipeline, options.planes, options.window == "rolling")
+    start, start_cpu = time.monotonic(), time.process_time()
+    run(pipeline)
+    passed, cpu = time.monotonic() - start, time.process_time() - start_cpu
+
+    stacks = int(options.seconds * options.rate)
+    if options.window == "rolling":
+        stacks = stacks * options.planes - options.planes + 1
+    stats = pipeline.get_by_name("sink").get_property("stats")
+    rendered, dropped = stats.get_uint64("rendered")[1], stats.get_uint64("dropped")[1]
+    print(f"method={options.method}, {options.size}, N={options.planes}, window={options.window}: {stacks} stacks asked "
+          f"for, {len(latency.milliseconds)} depth maps, {rendered} pictures in time, {dropped} late and dropped; "
+          f"{len(latency.milliseconds) / passed:.1f} depth maps/s over {passed:.1f} s, {cpu / passed:.2f} CPUs busy")
+    print(f"mux: {pipeline.get_by_name('mux').get_property('stats').to_string()}")
+    latency.print()
+    pipeline.set_state(Gst.State.NULL)
+
+
+if __name__ == "__main__":
+    main()
