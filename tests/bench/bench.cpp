@@ -160,11 +160,11 @@ public:
         const double copy = median(rows.front().wall);
         markdown_ << "\n## " << c.width << "x" << c.height << ", N=" << c.planes << "\n\n"
                   << "Peak memory of the process: " << static_cast<int>(memory_mib) << " MiB.\n\n"
-                  << "| | ms | of a copy | stacks/s | CPUs busy |\n|---|---|---|---|---|\n";
+                  << "| | ms | of a copy | stacks/s | processor ms |\n|---|---|---|---|---|\n";
         for (const Row &row : rows) {
             const double wall = median(row.wall), cpu = median(row.cpu);
             markdown_ << "| " << row.name << " | " << rounded(wall) << " | " << rounded(wall / copy) << " | "
-                      << rounded(1e3 / wall) << " | " << rounded(cpu / wall) << " |\n";
+                      << rounded(1e3 / wall) << " | " << rounded(cpu) << " |\n";
             for (const auto &[stage, times] : row.stages)
                 markdown_ << "| &nbsp;&nbsp;" << stage << " | " << rounded(median(times)) << " | "
                           << rounded(median(times) / copy) << " | | |\n";
@@ -185,10 +185,14 @@ private:
         linearity_ << "| " << c.width << "x" << c.height << " | " << c.planes << " | "
                    << rounded(paper / megapixel_planes) << " | " << rounded(volume / megapixel_planes)
                    << " |\n";
+        const auto processor_ratio = [&](size_t i, size_t ours) {
+            return rounded(median(rows[i].cpu) / median(rows[ours].cpu));
+        };
         for (size_t i = 3; i < rows.size(); i++)
             markdown_ << (i == 3 ? "\n" : "") << "Times as fast as \"" << rows[i].name
-                      << "\" alone: method=paper " << rounded(median(rows[i].wall) / paper)
-                      << ", method=volume " << rounded(median(rows[i].wall) / volume) << ", both with AIF.\n";
+                      << "\" alone, with AIF: method=paper " << rounded(median(rows[i].wall) / paper)
+                      << " (by processor time " << processor_ratio(i, 1) << "), method=volume "
+                      << rounded(median(rows[i].wall) / volume) << " (" << processor_ratio(i, 2) << ").\n\n";
     }
 
     void json_row(const Case &c, const Row &row, double wall, double cpu, double copy, double memory_mib)
