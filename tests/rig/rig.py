@@ -36,11 +36,6 @@ def skip(reason):
     sys.exit(SKIPPED)
 
 
-def full_length():
-    """Whether the proofs are to run at their full length, by hand."""
-    return os.environ.get('DFF_RIG_FULL') == '1'
-
-
 class BenchCamera:
     """The camera and the wires to its sequencer. A context manager; `report` is what it did, once it has ended."""
 

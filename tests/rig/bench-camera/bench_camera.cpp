@@ -24,6 +24,11 @@ constexpr double reference_exposure_us = 6000.0;
  * triggers, and genicam.xml says so in TriggerArmed. */
 enum Acquisition : uint32_t { acquisition_stopped = 0, acquisition_wanted = 1, acquisition_runs = 2 };
 
+void idle(ArvBuffer *, void *, guint32, guint32, ArvPixelFormat)
+{
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
 } // namespace
 
 BenchCamera::BenchCamera(const BenchCameraSettings &settings, PlanePictures pictures, Report &report)
@@ -45,6 +50,10 @@ BenchCamera::~BenchCamera()
 {
     thread_.request_stop();
     thread_.join();
+    /* Returns once fill() does not run, nor will; what Aravis sends in its place until its thread has ended
+     * is thrown away, since idle() takes longer than the next line. */
+    arv_fake_camera_set_fill_pattern(camera_, idle, nullptr);
+    set_sending(false);
     device_.reset();
     sensor_.stop_acquisition();
 }

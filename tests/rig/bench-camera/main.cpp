@@ -13,6 +13,7 @@
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
+#include <unistd.h>
 
 using namespace dff;
 
@@ -27,6 +28,16 @@ sigset_t block_ending_signals()
     sigaddset(&signals, SIGINT);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     return signals;
+}
+
+/* For a signal, or the end of the process that started this one: a test that is killed leaves no camera
+ * behind. */
+void wait_for_end(const sigset_t &signals)
+{
+    const pid_t parent = getppid();
+    const timespec interval{0, 500'000'000};
+    while (sigtimedwait(&signals, nullptr, &interval) < 0 && getppid() == parent) {
+    }
 }
 
 void write_truth(const std::string &path, const SweptCamera &camera)
@@ -63,8 +74,7 @@ void serve(const Options &options, const sigset_t &signals, Report &report)
         run.emplace(options.run_line, [&](bool level) { sequencer.set_run(level); });
 
     std::cout << "ready" << std::endl;
-    int signal = 0;
-    sigwait(&signals, &signal);
+    wait_for_end(signals);
 }
 
 } // namespace

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "proofs.h"
+
+#include <filesystem>
+#include <gtest/gtest.h>
+
+using namespace dff;
+using namespace std::chrono_literals;
+
+namespace {
+
+const std::string sink = " ! video/x-raw,format=GRAY8 ! appsink name=labels sync=false";
+
+size_t entries(const char *folder)
+{
+    const std::filesystem::directory_iterator begin(folder);
+    return static_cast<size_t>(std::distance(begin, std::filesystem::directory_iterator()));
+}
+
+} // namespace
+
+TEST(Lifecycle, a_source_that_waits_for_triggers_stops_at_once)
+{
+    BenchProcess bench({"--size=320x240", "--sweeps=2"});
+    WatchedStream stream(bench.source() + sink);
+    stream.play();
+    ASSERT_TRUE(stream.wait_for_frames(6, 10s)) << stream.stats();
+    stream.wait_for_silence(300ms);
+    const auto begin = std::chrono::steady_clock::now();
+    stream.stop();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+}
+
+TEST(Lifecycle, starting_and_stopping_leaves_nothing_behind)
+{
+    const int cycles = cycles_of_proof(5);
+    BenchProcess bench({"--size=160x120"});
+    WatchedStream stream(bench.source() + sink);
+    size_t threads = 0;
+    size_t files = 0;
+    for (int cycle = 0; cycle < cycles; cycle++) {
+        const uint64_t before = stream.watched().frames;
+        stream.play();
+        ASSERT_TRUE(stream.wait_for_frames(before + 6, 10s)) << "cycle " << cycle << ' ' << stream.stats();
+        stream.stop();
+        /* What GStreamer and GLib keep for good is there after the first. */
+        if (cycle == 1) {
+            threads = entries("/proc/self/task");
+            files = entries("/proc/self/fd");
+        }
+    }
+    std::printf("%d cycles, %lu frames, %lu wrong\n", cycles, stream.watched().frames,
+                stream.watched().wrong);
+    EXPECT_EQ(stream.watched().wrong, 0U) << stream.watched().first_wrong;
+    EXPECT_LE(entries("/proc/self/task"), threads);
+    EXPECT_LE(entries("/proc/self/fd"), files);
+}
+
+TEST(Lifecycle, a_camera_that_is_unplugged_is_an_error_and_can_come_back)
+{
+    BenchProcess bench({"--size=160x120"});
+    WatchedStream stream(bench.source() + sink);
+    stream.play();
+    ASSERT_TRUE(stream.wait_for_frames(30, 10s)) << stream.stats();
+    bench.kill();
+    const auto end = stream.wait_for_end(30s);
+    ASSERT_TRUE(end) << "neither error nor end";
+    std::printf("unplugged: %s\n", end->c_str());
+    stream.stop();
+
+    bench.start();
+    WatchedStream again(bench.source() + sink);
+    again.play();
+    EXPECT_TRUE(again.wait_for_frames(30, 10s)) << again.stats();
+    EXPECT_EQ(stream.watched().wrong + again.watched().wrong, 0U);
+}
