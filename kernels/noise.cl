@@ -55,18 +55,26 @@ __kernel void plane_noise(__global const uchar *stack, __global const ulong2 *ro
     sigmas[z] = 1.4826f / 6.0f / BINS_A_DN * median_bin(histogram, count);
 }
 
-/* One work-item. The pre-blur is a Gaussian of t (scale + 2) / 5 pixels, none below a quarter. With `is_rolling` the one
+/* The pre-blur's sigma in pixels over t (scale + 2): where all planes are equally noisy, and where one is by 30 % more so
+ * than another. Alignment smooths all planes but the middle one, whose noise then passes for focus. */
+#define EVEN_BLUR 0.2f
+#define UNEVEN_BLUR 0.28f
+
+/* One work-item. The pre-blur is a Gaussian, none below a quarter of a pixel. With `is_rolling` the one
  * before is kept where no tap differs by more than 1, since the planes that have not changed were blurred by it. */
 __kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale, int is_rolling)
 {
-    float sigma = sigmas[0];
-    for (int z = 1; z < planes; z++)
+    float sigma = sigmas[0], highest = sigmas[0];
+    for (int z = 1; z < planes; z++) {
         sigma = min(sigma, sigmas[z]);
+        highest = max(highest, sigmas[z]);
+    }
     const float t = sigma * sigma / (sigma * sigma + 1.0f);
     noise->sigma = sigma;
     noise->t = t;
 
-    const float blur = t * (scale + 2) / 5.0f;
+    const float unevenness = clamp((highest / max(sigma, 1e-3f) - 1.1f) / 0.2f, 0.0f, 1.0f);
+    const float blur = t * (scale + 2) * mix(EVEN_BLUR, UNEVEN_BLUR, unevenness);
     float weights[4], sum = -1.0f;
     for (int i = 0; i < 4; i++) {
         weights[i] = blur > 0.25f ? exp(-i * i / (2.0f * blur * blur)) : i == 0;

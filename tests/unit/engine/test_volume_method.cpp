@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/engine_error.h"
 #include "engine/focus_engine.h"
+#include "engine/noise_estimate.h"
 #include "test_stack.h"
 
 #include <algorithm>
@@ -179,6 +180,28 @@ TEST(VolumeMethod, a_rolling_window_has_the_depth_of_whole_stacks)
             other += std::abs(depth[i] - whole.depth[i]) > 600; /* 0.05 planes */
         EXPECT_LE(other, depth.size() / 50) << "after " << planes.size() << " new planes";
     }
+}
+
+/* As alignment leaves them: it smooths all planes but the middle one. */
+TEST(VolumeMethod, planes_unequally_noisy_are_blurred_more)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 5};
+    const auto centre_tap = [&](float noise_of_middle) {
+        TestStack stack(shape);
+        std::mt19937 random(7);
+        std::normal_distribution<float> grain(0.0f, 1.0f);
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (size_t i = 0; i < size_t{shape.width} * shape.height; i++)
+                stack.memory[stack.layout[z].offset + i] =
+                    static_cast<std::byte>(128.5f + (z == 2 ? noise_of_middle : 5.0f) * grain(random));
+        CommandQueue queue(Device::open(""));
+        StackBuffer buffer(queue, shape);
+        buffer.assign(stack.view());
+        NoiseEstimate estimate(queue, shape, 2);
+        estimate.run(buffer);
+        return read_back<NoiseEstimate::Noise>(queue, estimate.noise(), 1)[0].taps[0];
+    };
+    EXPECT_LT(centre_tap(7.0f), centre_tap(5.0f) - 3);
 }
 
 TEST(VolumeMethod, a_scale_that_there_is_not_is_refused)
