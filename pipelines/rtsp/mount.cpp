@@ -44,7 +44,7 @@ std::span<const Mount> all_mounts()
          {"aif", "depth"},
          {"x264enc", "lightfieldcompose"},
          {0},
-         "appsrc name=aif ! queue ! compose.color  appsrc name=depth ! queue ! compose.depth  "
+         "appsrc name=aif ! queue ! videoconvert ! compose.color  appsrc name=depth ! queue ! compose.depth  "
          "lightfieldcompose name=compose layout=rgbd ! " +
              h264("pay0")},
         {"/planes",

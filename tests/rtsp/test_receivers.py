@@ -50,9 +50,9 @@ def second_machine():
 
 
 class Receivers(unittest.TestCase):
-    def test_ffmpeg_plays_colour_and_hue(self):
+    def test_ffmpeg_plays_every_h264_mount(self):
         with Server(RIG) as server:
-            for path, protocol in (('/color', 'tcp'), ('/hue', 'udp'), ('/stream', 'tcp')):
+            for path, protocol in (('/color', 'tcp'), ('/hue', 'udp'), ('/stream', 'tcp'), ('/rgbd', 'tcp')):
                 with self.subTest(path=path, protocol=protocol):
                     played = subprocess.run(
                         ['ffmpeg', '-v', 'error', '-analyzeduration', '500000', '-rtsp_transport', protocol,
