@@ -37,9 +37,14 @@ BenchProcess::~BenchProcess()
     std::filesystem::remove_all(folder_);
 }
 
+std::string BenchProcess::unwired_source() const
+{
+    return "lenssweepsrc name=source camera=127.0.0.1";
+}
+
 std::string BenchProcess::source() const
 {
-    return "lenssweepsrc name=source camera=127.0.0.1 run-line=socket:" + (folder_ / "run").string() +
+    return unwired_source() + " run-line=socket:" + (folder_ / "run").string() +
            " sync-line=socket:" + (folder_ / "sync").string();
 }
 

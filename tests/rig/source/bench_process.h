@@ -22,7 +22,8 @@ public:
     BenchProcess(const BenchProcess &) = delete;
     BenchProcess &operator=(const BenchProcess &) = delete;
 
-    /* Properties of lenssweepsrc that name this camera and its lines. */
+    /* lenssweepsrc, called "source", with this camera; and with its lines. */
+    std::string unwired_source() const;
     std::string source() const;
 
     std::string truth() const { return folder_ / "truth.png"; }

@@ -72,5 +72,5 @@ TEST(Depth, is_that_of_the_simulated_scene)
     ASSERT_FALSE(truth.empty());
     const double decibels = psnr(depth_of(depth, truth.size()), truth);
     std::printf("depth over GigE Vision, %dx%d: PSNR %.1f dB\n", truth.cols, truth.rows, decibels);
-    EXPECT_GT(decibels, 20.0);
+    EXPECT_GT(decibels, 26.0);
 }

@@ -76,3 +76,29 @@ TEST(Labels, triggers_may_pause)
     run_dry(stream, pause + 2.0);
     expect_accounts_agree(stream, bench.stop());
 }
+
+TEST(Labels, a_lens_in_the_camera_is_stepped)
+{
+    BenchProcess bench({"--size=160x120", "--lens=register"});
+    WatchedStream stream(bench.unwired_source() + " trigger=software lens=genicam:FocalPower rate=2" + sink);
+    stream.play();
+    EXPECT_TRUE(stream.wait_for_frames(24, 20s)) << stream.stats();
+    stream.stop();
+    const Watched watched = stream.watched();
+    std::printf("stepped: %lu frames, %lu wrong\n%s\n", watched.frames, watched.wrong,
+                stream.stats().c_str());
+    EXPECT_EQ(watched.wrong, 0U) << watched.first_wrong;
+}
+
+/* Rendering its planes takes longer than a short proof may. */
+TEST(Labels, full_hd_at_120_frames_a_second)
+{
+    const double seconds = seconds_of_proof(0.0);
+    if (seconds == 0.0)
+        GTEST_SKIP() << "only with DFF_RIG_SECONDS";
+    BenchProcess bench(
+        {"--size=1920x1080", "--rate=20", "--sweeps=" + std::to_string(static_cast<int>(seconds * 20))});
+    WatchedStream stream(bench.source() + " rate=20" + sink);
+    run_dry(stream, seconds);
+    expect_accounts_agree(stream, bench.stop());
+}
