@@ -40,6 +40,7 @@
  */
 #include "lightfieldcompose.h"
 
+#include "depth_matching.h"
 #include "display_preset.h"
 #include "gstcl/engine_message.h"
 #include "light_field_picture.h"
@@ -96,49 +97,6 @@ static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
     "depth", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(COLOR_CAPS));
-
-static GstClockTime running_time(GstAggregatorPad *pad, GstBuffer *buffer)
-{
-    return gst_segment_to_running_time(&pad->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
-}
-
-/* How much later than the colour picture the depth map is; 0 where either has no time. */
-static GstClockTimeDiff lateness(GstLightFieldCompose *self, GstBuffer *color, GstBuffer *depth)
-{
-    const GstClockTime color_time = running_time(self->color_pad, color);
-    const GstClockTime depth_time = running_time(self->depth_pad, depth);
-    if (!GST_CLOCK_TIME_IS_VALID(color_time) || !GST_CLOCK_TIME_IS_VALID(depth_time))
-        return 0;
-    return GST_CLOCK_DIFF(color_time, depth_time);
-}
-
-/* The depth map that goes with `color`, or nullptr if it has none; empty if it has not come yet. Maps of
- * pictures that never came are dropped. */
-static std::optional<GstBuffer *> matching_depth(GstLightFieldCompose *self, GstBuffer *color)
-{
-    const GstClockTime duration = GST_BUFFER_DURATION(color);
-    const GstClockTimeDiff tolerance =
-        GST_CLOCK_TIME_IS_VALID(duration) ? static_cast<GstClockTimeDiff>(duration / 2) : GST_MSECOND;
-
-    while (GstBuffer *depth = gst_aggregator_pad_peek_buffer(self->depth_pad)) {
-        const bool is_gap = gst_buffer_get_size(depth) == 0;
-        const GstClockTimeDiff late = lateness(self, color, depth);
-        if (late > tolerance) {
-            gst_buffer_unref(depth);
-            return nullptr;
-        }
-        gst_aggregator_pad_drop_buffer(self->depth_pad);
-        if (!is_gap && late >= -tolerance)
-            return depth;
-        GST_DEBUG_OBJECT(self, "dropping a depth map without its picture, or a gap");
-        gst_buffer_unref(depth);
-        if (is_gap && late >= -tolerance)
-            return nullptr;
-    }
-    if (gst_aggregator_pad_is_eos(self->depth_pad))
-        return nullptr;
-    return std::nullopt;
-}
 
 static void account(GstLightFieldCompose *self, GstClockTime compute_time, bool with_depth)
 {
@@ -197,7 +155,7 @@ static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator
         gst_aggregator_pad_drop_buffer(self->color_pad);
         return GST_FLOW_OK;
     }
-    const std::optional<GstBuffer *> match = matching_depth(self, color);
+    const std::optional<GstBuffer *> match = dff::matching_depth(self->color_pad, color, self->depth_pad);
     if (!match)
         return GST_AGGREGATOR_FLOW_NEED_DATA;
     g_autoptr(GstBuffer) depth = *match;
