@@ -336,6 +336,21 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *s
     GST_OBJECT_UNLOCK(self);
 }
 
+/* Before the bin loses its children: what follows a pad's end needs them. */
+static void dispose(GObject *object)
+{
+    auto *self = GST_DFF_CAMERA_BIN(object);
+    g_autoptr(GstPad) light_pad = gst_element_get_static_pad(GST_ELEMENT(self), "lightfield");
+    if (light_pad)
+        gst_element_release_request_pad(GST_ELEMENT(self), light_pad);
+    for (const char *name : {"depth", "aif"}) {
+        g_autoptr(GstPad) pad = gst_element_get_static_pad(GST_ELEMENT(self), name);
+        if (pad)
+            g_signal_handlers_disconnect_by_data(pad, self);
+    }
+    G_OBJECT_CLASS(gst_dff_camera_bin_parent_class)->dispose(object);
+}
+
 static void finalize(GObject *object)
 {
     delete GST_DFF_CAMERA_BIN(object)->state;
@@ -357,6 +372,7 @@ static void gst_dff_camera_bin_class_init(GstDffCameraBinClass *klass)
     GST_DEBUG_CATEGORY_INIT(dff_camera_bin_debug, "dffcamerabin", 0, "depth camera in one element");
     object_class->set_property = set_property;
     object_class->get_property = get_property;
+    object_class->dispose = dispose;
     object_class->finalize = finalize;
     g_object_class_install_property(
         object_class, PropertySource,

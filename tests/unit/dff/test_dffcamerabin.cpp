@@ -194,6 +194,19 @@ TEST(DffCameraBin, the_light_field_alone_brings_its_pictures)
     EXPECT_EQ(GST_BIN_NUMCHILDREN(bin), children - 6);
 }
 
+TEST(DffCameraBin, goes_away_with_every_pad_in_use)
+{
+    gst_init(nullptr, nullptr);
+    g_autoptr(GstElementFactory) factory = gst_element_factory_find("lightfieldcompose");
+    const GLogLevelFlags fatal =
+        g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL));
+    {
+        const TestPipeline pipeline(camera(planes) + " camera.depth ! fakesink camera.aif ! fakesink" +
+                                    (factory ? " camera.lightfield ! fakesink" : ""));
+    }
+    g_log_set_always_fatal(fatal);
+}
+
 TEST(DffCameraBin, a_source_that_cannot_be_used_is_named)
 {
     for (const char *source : {"nosuchelement", "fakesink", "audiotestsrc"}) {
