@@ -43,13 +43,16 @@ inline float4 trace(const Layers *layers, float2 origin, float2 slope)
     const int first = direction < 0 ? (int)ceil(entry) : (int)floor(entry);
     const int steps = (int)(fabs(lean) * (greatest - least)) + 2;
     const float fall = 1.0f / fabs(lean); /* of the ray, a pixel */
-    const int2 last = layers->size - 1;
+    const int stride = layers->size.x, last_along = (along_x ? layers->size.x : layers->size.y) - 1;
+    const float last_across = (along_x ? layers->size.y : layers->size.x) - 1;
+    const float beside = along_x ? origin.y : origin.x, aside = along_x ? slope.y : slope.x;
 
     float q = (first - start) / lean, below = -INFINITY;
     bool behind = false;
     for (int k = 0; k <= steps; k++, q -= fall) {
-        const int2 p = clamp(convert_int2_rte(origin + slope * q), (int2)(0), last);
-        const size_t i = (size_t)p.y * layers->size.x + p.x;
+        const int along = clamp(first + direction * k, 0, last_along);
+        const int across = (int)clamp(beside + aside * q + 0.5f, 0.0f, last_across);
+        const size_t i = along_x ? (size_t)across * stride + along : (size_t)along * stride + across;
         const float height = layers->height[i];
         if (q > height) {
             behind = false;
