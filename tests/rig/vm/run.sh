@@ -5,8 +5,8 @@
 # run.sh CACHE_DIR COMMAND...: boots a throw-away virtual machine and runs the command, by its absolute path, in it, as
 # root. The machine sees this one's files, but writes to them go to its memory. It has a V4L2 camera that can be focused
 # (vivid), the GPIO lines RUN and SYNC (gpio-sim), and an I2C bus with the registers of the sequencer and the lens driver.
-# Needs no /dev/kvm, and installs no kernel: CACHE_DIR keeps what was fetched and built. Ends with the command's status,
-# with 77 and a reason where it cannot run.
+# The variables of GStreamer and of this project go with it. Needs no /dev/kvm, and installs no kernel: CACHE_DIR keeps what
+# was fetched and built. Ends with the command's status, with 77 and a reason where it cannot run.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 cache=$1
@@ -81,7 +81,7 @@ done
 
 rm -f "$cache"/out/*
 printf '%q ' "$@" >"$cache/out/command"
-export -p >"$cache/out/environment"
+export -p | grep -E '^declare -x (GST_|DFF_|GI_|GTEST_|LD_LIBRARY_PATH)' >"$cache/out/environment" || true
 pwd >"$cache/out/folder"
 cp "$here/guest.sh" "$cache/out/guest.sh"
 timeout "$seconds" qemu-system-x86_64 -accel tcg,thread=multi -machine pc -cpu max -smp 2 -m 1024 -display none -no-reboot -nodefaults \
