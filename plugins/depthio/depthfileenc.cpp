@@ -159,7 +159,8 @@ static GstFlowReturn update_src_caps(GstAggregator *aggregator, GstCaps *, GstCa
     const State &state = state_of(GST_DEPTH_FILE_ENC(aggregator));
     if (!state.colour)
         return GST_AGGREGATOR_FLOW_NEED_DATA;
-    *caps = gst_caps_copy(gst_pad_get_pad_template_caps(GST_AGGREGATOR_SRC_PAD(aggregator)));
+    g_autoptr(GstCaps) template_caps = gst_pad_get_pad_template_caps(GST_AGGREGATOR_SRC_PAD(aggregator));
+    *caps = gst_caps_copy(template_caps);
     gst_caps_set_simple(*caps, "width", G_TYPE_INT, GST_VIDEO_INFO_WIDTH(&*state.colour), "height",
                         G_TYPE_INT, GST_VIDEO_INFO_HEIGHT(&*state.colour), "framerate", GST_TYPE_FRACTION,
                         GST_VIDEO_INFO_FPS_N(&*state.colour), GST_VIDEO_INFO_FPS_D(&*state.colour), nullptr);
