@@ -32,6 +32,11 @@ int cycles_of_proof(int otherwise)
     return static_cast<int>(number("DFF_RIG_CYCLES", otherwise));
 }
 
+int rate_of_proof(int otherwise)
+{
+    return static_cast<int>(number("DFF_RIG_RATE", otherwise));
+}
+
 void expect_accounts_agree(const WatchedStream &stream, const BenchProcess::Counts &bench)
 {
     const auto exposed = static_cast<uint64_t>(bench.at("exposed"));

@@ -9,9 +9,11 @@
 
 namespace dff {
 
-/* A proof is short unless DFF_RIG_SECONDS and DFF_RIG_CYCLES ask for its full length. */
+/* A proof is short unless DFF_RIG_SECONDS and DFF_RIG_CYCLES ask for its full length; DFF_RIG_RATE is in
+ * sweeps a second. */
 double seconds_of_proof(double otherwise);
 int cycles_of_proof(int otherwise);
+int rate_of_proof(int otherwise);
 
 /* What lenssweepsrc says it got and lost is what the bench camera says it sent and lost: no frame is
  * unaccounted for. */
