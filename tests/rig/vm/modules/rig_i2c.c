@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * An I2C bus with two slaves: at 0x3c the words of the sweep sequencer (fpga/registers.toml), at 0x77 the bytes of
- * a MAX14574. Takes I2C_RDWR and, through the kernel's emulation, SMBus. /proc/rig_i2c is the log of what was
- * written, a line a register: "3c 02=0001" (a word), "77 09=02" (a byte); writing to it empties it. The next
- * `nack` transfers are not acknowledged. */
+ * An I2C bus with two slaves: at 0x3c the words of the sweep sequencer (fpga/registers.toml), at 0x77 the
+ * bytes of a MAX14574. Takes I2C_RDWR and, through the kernel's emulation, SMBus. /proc/rig_i2c is the log of
+ * what was written, a line a register: "3c 02=0001" (a word), "77 09=02" (a byte); writing to it empties it.
+ * The next `nack` transfers are not acknowledged. */
 #include <linux/i2c.h>
 #include <linux/module.h>
 #include <linux/mutex.h>
@@ -31,105 +31,106 @@ static size_t log_length;
 
 static void log_write(unsigned int slave, unsigned int number, unsigned int value, int digits)
 {
-	log_length += scnprintf(log_text + log_length, LOG_BYTES - log_length, "%02x %02x=%0*x\n", slave, number, digits, value);
+    log_length += scnprintf(log_text + log_length, LOG_BYTES - log_length, "%02x %02x=%0*x\n", slave, number,
+                            digits, value);
 }
 
 static u16 *word(unsigned int number)
 {
-	if (number > PLANE_SELECT)
-		return &rows[words[PLANE_SELECT] & 63][number - PLANE_SELECT - 1];
-	return &words[number];
+    if (number > PLANE_SELECT)
+        return &rows[words[PLANE_SELECT] & 63][number - PLANE_SELECT - 1];
+    return &words[number];
 }
 
 static int write_sequencer(const u8 *data, size_t length)
 {
-	unsigned int number = data[0] & 0x7f;
-	size_t at = 1;
+    unsigned int number = data[0] & 0x7f;
+    size_t at = 1;
 
-	if (data[0] & 0x80) { /* an SMBus block, with its count */
-		if (length < 2 || data[1] != length - 2)
-			return -ENXIO;
-		at = 2;
-	}
-	if ((length - at) % 2)
-		return -ENXIO;
-	for (; at < length; at += 2, number++) {
-		u16 value = data[at] | data[at + 1] << 8;
+    if (data[0] & 0x80) { /* an SMBus block, with its count */
+        if (length < 2 || data[1] != length - 2)
+            return -ENXIO;
+        at = 2;
+    }
+    if ((length - at) % 2)
+        return -ENXIO;
+    for (; at < length; at += 2, number++) {
+        u16 value = data[at] | data[at + 1] << 8;
 
-		if (number >= WORDS)
-			return -ENXIO;
-		log_write(SEQUENCER, number, value, 4);
-		*word(number) = number == ERROR ? *word(number) & ~value : value;
-	}
-	return 0;
+        if (number >= WORDS)
+            return -ENXIO;
+        log_write(SEQUENCER, number, value, 4);
+        *word(number) = number == ERROR ? *word(number) & ~value : value;
+    }
+    return 0;
 }
 
 static int write_lens(const u8 *data, size_t length)
 {
-	size_t at;
+    size_t at;
 
-	for (at = 1; at < length; at++) {
-		u8 number = data[0] + at - 1;
+    for (at = 1; at < length; at++) {
+        u8 number = data[0] + at - 1;
 
-		log_write(LENS, number, data[at], 2);
-		bytes[number] = data[at];
-	}
-	return 0;
+        log_write(LENS, number, data[at], 2);
+        bytes[number] = data[at];
+    }
+    return 0;
 }
 
 static int read_slave(unsigned int slave, unsigned int number, u8 *data, size_t length)
 {
-	size_t at;
+    size_t at;
 
-	for (at = 0; at < length; at++) {
-		if (slave == LENS)
-			data[at] = bytes[(number + at) & 0xff];
-		else if (number + at / 2 >= WORDS)
-			return -ENXIO;
-		else
-			data[at] = *word(number + at / 2) >> (at % 2 ? 8 : 0);
-	}
-	return 0;
+    for (at = 0; at < length; at++) {
+        if (slave == LENS)
+            data[at] = bytes[(number + at) & 0xff];
+        else if (number + at / 2 >= WORDS)
+            return -ENXIO;
+        else
+            data[at] = *word(number + at / 2) >> (at % 2 ? 8 : 0);
+    }
+    return 0;
 }
 
 static int transfer_locked(struct i2c_msg *messages, int count)
 {
-	u8 number = 0;
-	int i, result = 0;
+    u8 number = 0;
+    int i, result = 0;
 
-	if (nack > 0) {
-		nack--;
-		return -ENXIO;
-	}
-	for (i = 0; i < count && !result; i++) {
-		struct i2c_msg *message = &messages[i];
+    if (nack > 0) {
+        nack--;
+        return -ENXIO;
+    }
+    for (i = 0; i < count && !result; i++) {
+        struct i2c_msg *message = &messages[i];
 
-		if (message->addr != SEQUENCER && message->addr != LENS)
-			return -ENXIO;
-		if (message->flags & I2C_M_RD) {
-			result = read_slave(message->addr, number, message->buf, message->len);
-		} else if (message->len) {
-			number = message->buf[0];
-			result = message->addr == LENS ? write_lens(message->buf, message->len)
-						       : write_sequencer(message->buf, message->len);
-		}
-	}
-	return result ? result : count;
+        if (message->addr != SEQUENCER && message->addr != LENS)
+            return -ENXIO;
+        if (message->flags & I2C_M_RD) {
+            result = read_slave(message->addr, number, message->buf, message->len);
+        } else if (message->len) {
+            number = message->buf[0];
+            result = message->addr == LENS ? write_lens(message->buf, message->len)
+                                           : write_sequencer(message->buf, message->len);
+        }
+    }
+    return result ? result : count;
 }
 
 static int transfer(struct i2c_adapter *adapter, struct i2c_msg *messages, int count)
 {
-	int result;
+    int result;
 
-	mutex_lock(&lock);
-	result = transfer_locked(messages, count);
-	mutex_unlock(&lock);
-	return result;
+    mutex_lock(&lock);
+    result = transfer_locked(messages, count);
+    mutex_unlock(&lock);
+    return result;
 }
 
 static u32 functionality(struct i2c_adapter *adapter)
 {
-	return I2C_FUNC_I2C | I2C_FUNC_SMBUS_EMUL;
+    return I2C_FUNC_I2C | I2C_FUNC_SMBUS_EMUL;
 }
 
 static const struct i2c_algorithm algorithm = {.master_xfer = transfer, .functionality = functionality};
@@ -137,48 +138,48 @@ static struct i2c_adapter adapter = {.owner = THIS_MODULE, .algo = &algorithm, .
 
 static int show_log(struct seq_file *file, void *unused)
 {
-	mutex_lock(&lock);
-	seq_write(file, log_text, log_length);
-	mutex_unlock(&lock);
-	return 0;
+    mutex_lock(&lock);
+    seq_write(file, log_text, log_length);
+    mutex_unlock(&lock);
+    return 0;
 }
 
 static int open_log(struct inode *inode, struct file *file)
 {
-	return single_open(file, show_log, NULL);
+    return single_open(file, show_log, NULL);
 }
 
 static ssize_t empty_log(struct file *file, const char __user *data, size_t length, loff_t *offset)
 {
-	mutex_lock(&lock);
-	log_length = 0;
-	mutex_unlock(&lock);
-	return length;
+    mutex_lock(&lock);
+    log_length = 0;
+    mutex_unlock(&lock);
+    return length;
 }
 
 static const struct proc_ops log_operations = {
-	.proc_open = open_log,
-	.proc_read = seq_read,
-	.proc_lseek = seq_lseek,
-	.proc_release = single_release,
-	.proc_write = empty_log,
+    .proc_open = open_log,
+    .proc_read = seq_read,
+    .proc_lseek = seq_lseek,
+    .proc_release = single_release,
+    .proc_write = empty_log,
 };
 
 static int __init rig_i2c_init(void)
 {
-	int result = i2c_add_adapter(&adapter);
+    int result = i2c_add_adapter(&adapter);
 
-	if (!result && !proc_create("rig_i2c", 0600, NULL, &log_operations)) {
-		i2c_del_adapter(&adapter);
-		result = -ENOMEM;
-	}
-	return result;
+    if (!result && !proc_create("rig_i2c", 0600, NULL, &log_operations)) {
+        i2c_del_adapter(&adapter);
+        result = -ENOMEM;
+    }
+    return result;
 }
 
 static void __exit rig_i2c_exit(void)
 {
-	remove_proc_entry("rig_i2c", NULL);
-	i2c_del_adapter(&adapter);
+    remove_proc_entry("rig_i2c", NULL);
+    i2c_del_adapter(&adapter);
 }
 
 module_init(rig_i2c_init);
