@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The all-in-focus picture of aif.cl for CPUs, at the depth of soften_depth.cl, samples of 8 bits: one work-item a strip
- * of STRIP rows, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane, which
- * moves a sample by at most 1/512 of what it changes from one plane to the next.
+ * The all-in-focus picture of aif.cl for CPUs, at the depth of soften_depth.cl, samples of 8 bits: one work-item a
+ * strip of STRIP rows, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane,
+ * which moves a sample by at most 1/512 of what it changes from one plane to the next.
  */
 #include "../noise_type.cl"
 #include "lanes32.cl"
@@ -59,7 +59,8 @@ inline ushort16 positions_of(const Depth *depth, float16 pixels)
 /* The least depth around each pixel of a row, less 1. Returns whether any pixel of the row has no depth. */
 inline int nearest_row(const Depth *depth, int y, ushort *nearest)
 {
-    __global const ushort *above = depth_row(depth, y - 1), *here = depth_row(depth, y), *below = depth_row(depth, y + 1);
+    __global const ushort *above = depth_row(depth, y - 1), *here = depth_row(depth, y);
+    __global const ushort *below = depth_row(depth, y + 1);
     const int width = depth->width;
     ushort32 unknown = 0;
     nearest[0] = here[0] - 1;
@@ -243,9 +244,7 @@ inline int2 planes_around(ushort16 least, ushort16 most, int planes)
 /* Between the two planes around each position. */
 inline uchar32 linear_samples(const Source *source, int x, int y, ushort32 position)
 {
-    const ushort16 a = __builtin_shufflevector(position, position, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    const ushort16 b = __builtin_shufflevector(position, position, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
-                                               29, 30, 31);
+    const ushort16 a = first_half(position), b = second_half(position);
     const int2 range = planes_around(min(a, b), max(a, b), source->planes);
     ushort32 sum = UNIT / 2;
     for (int z = range.x; z <= range.y; z++) {
@@ -305,14 +304,12 @@ inline uchar16 any_samples(const Source *source, int x, int y, ushort16 position
     return any(none) ? select(value, mean_samples(source, x, y), convert_char16(none)) : value;
 }
 
-/* Runs over 32 samples or more as FOR_EACH_16 does over 16. */
-#define FOR_EACH_32(x, width) for (int x = 0; x < (width); x = x + 32 < (width) ? min(x + 32, (width) - 32) : (width))
-
 /* One work-item a strip of all components. */
-__kernel void compose_strip(__global const uchar *stack, __global const ulong2 *table, __global const ushort *depth_pixels,
-                            int2 depth_size, int depth_stride, __global const ushort *position_table, float scale,
-                            __global uchar *picture, __global const Component *components, int component_count,
-                            int planes, __global const Noise *noise)
+__kernel void compose_strip(__global const uchar *stack, __global const ulong2 *table,
+                            __global const ushort *depth_pixels, int2 depth_size, int depth_stride,
+                            __global const ushort *position_table, float scale, __global uchar *picture,
+                            __global const Component *components, int component_count, int planes,
+                            __global const Noise *noise)
 {
     ushort positions[(STRIP + 1) * STRIDE];
     ushort samples[4 * STRIDE];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * 32 lanes of 16 bits: one register of AVX-512, two of AVX2. Vectors of 32 are clang's, on which the drivers of CPUs are
- * built; OpenCL's own end at 16.
+ * 32 lanes of 16 bits: one register of AVX-512, two of AVX2. Vectors of 32 are clang's, on which the drivers of CPUs
+ * are built; OpenCL's own end at 16.
  */
 typedef uchar uchar32 __attribute__((ext_vector_type(32)));
 typedef short short32 __attribute__((ext_vector_type(32)));
@@ -35,3 +35,16 @@ inline ushort32 widen(uchar32 v)
 {
     return __builtin_convertvector(v, ushort32);
 }
+
+inline ushort16 first_half(ushort32 v)
+{
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+inline ushort16 second_half(ushort32 v)
+{
+    return __builtin_shufflevector(v, v, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
+}
+
+/* Runs over 32 samples or more as FOR_EACH_16 does over 16. */
+#define FOR_EACH_32(x, width) for (int x = 0; x < (width); x = x + 32 < (width) ? min(x + 32, (width) - 32) : (width))

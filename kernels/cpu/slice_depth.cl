@@ -50,8 +50,8 @@ inline int lowest(uchar16 v)
     return min(c.lo, c.hi);
 }
 
-/* Slices rows y to end (mirrored) of the 16 columns from x on, which take `column`, a cell for each step of luma. Of the
- * cells only those between the darkest and the brightest pixel are looked at; the last lanes may be other columns',
+/* Slices rows y to end (mirrored) of the 16 columns from x on, which take `column`, a cell for each step of luma. Of
+ * the cells only those between the darkest and the brightest pixel are looked at; the last lanes may be other columns',
  * which write theirs later. */
 inline void slice_cells(__global const uchar *luma, int width, int height, int x, int y, int end,
                         __global const float *column, int sigma_luma, float *u)
@@ -68,7 +68,8 @@ inline void slice_cells(__global const uchar *luma, int width, int height, int x
         const uchar16 row = *(__global const lanes8 *)(luma + (ulong)mirror(i, height) * width + first);
         float16 position = column[from];
         for (int step = from + 1; step <= to; step++)
-            position = select(position, (float16)column[step], convert_int16(row >= (uchar16)(uchar)(step * sigma_luma)));
+            position = select(position, (float16)column[step],
+                              convert_int16(row >= (uchar16)(uchar)(step * sigma_luma)));
         if (first == x)
             *(flanes *)(u + x) = position;
         else

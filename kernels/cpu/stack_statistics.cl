@@ -5,6 +5,8 @@
  * the moved pixels of z_entropy.cl. H is at most log2 of the bins between the darkest and the brightest plane, so that
  * the histogram is needed where these lie far apart only.
  */
+#include "lanes32.cl"
+
 #define BIN_SHIFT 4 /* 16 DN */
 #define BINS 16
 #define MOST_PLANES 64
@@ -47,34 +49,51 @@ inline float16 entropy(const uchar16 *bins, int planes, int first, int last)
     return log2((float)planes) - sum / planes;
 }
 
+/* Which of 16 pixels moved, 255 each. */
+inline uchar16 entropy_exceeds(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
+                               float threshold_bits)
+{
+    uchar16 bins[MOST_PLANES], first = 255, last = 0;
+    for (int z = 0; z < planes; z++) {
+        bins[z] = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x) >> (uchar)BIN_SHIFT;
+        first = min(first, bins[z]);
+        last = max(last, bins[z]);
+    }
+    return as_uchar16(convert_char16(entropy(bins, planes, lowest(first), highest(last)) > threshold_bits + ROUNDING));
+}
+
+inline uchar16 mean_of(ushort16 sum, int planes)
+{
+    return convert_uchar16(convert_float16(sum) * (1.0f / planes) + 1e-3f);
+}
+
 /* One work-item a row. mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. */
 __kernel void stack_statistics(__global const uchar *stack, __global const ulong2 *rows, __global uchar *mean,
                                __global uchar *moved, int width, int planes, float threshold_bits)
 {
     const int y = (int)get_group_id(0);
     const uchar most_bins = (uchar)min(exp2(threshold_bits), (float)BINS);
-    FOR_EACH_16(x, width)
+    FOR_EACH_32(x, width)
     {
-        ushort16 sum = 0;
-        uchar16 darkest = 255, brightest = 0;
+        ushort32 sum = 0;
+        uchar32 darkest = 255, brightest = 0;
         for (int z = 0; z < planes; z++) {
-            const uchar16 luma = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x);
-            sum += convert_ushort16(luma);
-            darkest = min(darkest, luma);
-            brightest = max(brightest, luma);
+            const uchar32 luma = *(__global const bytes32 *)(stack + rows[z].x + rows[z].y * (ulong)y + x);
+            sum += widen(luma);
+            darkest = luma < darkest ? luma : darkest;
+            brightest = luma > brightest ? luma : brightest;
         }
         const ulong pixel = (ulong)y * width + x;
-        *(__global lanes8 *)(mean + pixel) = convert_uchar16(convert_float16(sum) * (1.0f / planes) + 1e-3f);
+        *(__global lanes8 *)(mean + pixel) = mean_of(first_half(sum), planes);
+        *(__global lanes8 *)(mean + pixel + 16) = mean_of(second_half(sum), planes);
 
-        const uchar16 first = darkest >> (uchar)BIN_SHIFT, last = brightest >> (uchar)BIN_SHIFT;
-        uchar16 exceeds = 0;
-        if (any(last - first >= most_bins)) {
-            uchar16 bins[MOST_PLANES];
-            for (int z = 0; z < planes; z++)
-                bins[z] = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x) >> (uchar)BIN_SHIFT;
-            exceeds = as_uchar16(convert_char16(entropy(bins, planes, lowest(first), highest(last)) >
-                                                threshold_bits + ROUNDING));
+        uchar bins_between[32];
+        *(bytes32 *)bins_between = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT);
+        for (int i = 0; i < 32; i += 16) {
+            uchar16 exceeds = 0;
+            if (any(*(const lanes8 *)(bins_between + i) >= (uchar16)most_bins))
+                exceeds = entropy_exceeds(stack, rows, x + i, y, planes, threshold_bits);
+            *(__global lanes8 *)(moved + pixel + i) = exceeds;
         }
-        *(__global lanes8 *)(moved + pixel) = exceeds;
     }
 }
