@@ -25,7 +25,7 @@
 
 #include "rtp/record_list.h"
 
-#include <cstring>
+#include <algorithm>
 #include <gst/dff/dff.h>
 
 GST_DEBUG_CATEGORY_STATIC(gst_rtp_header_extension_dff_debug);
@@ -106,7 +106,7 @@ static gssize write(GstRTPHeaderExtension *, const GstBuffer *input, GstRTPHeade
     const std::vector<uint8_t> list = metas_of(const_cast<GstBuffer *>(input));
     if (list.size() > size)
         return -1;
-    std::memcpy(data, list.data(), list.size());
+    std::copy(list.begin(), list.end(), data);
     return static_cast<gssize>(list.size());
 }
 

@@ -23,7 +23,11 @@ std::string receive(const std::string &url)
 /* A folder that goes with the test. */
 class Folder {
 public:
-    Folder() : path_(g_dir_make_tmp("dff-rtsp-XXXXXX", nullptr)) {}
+    Folder()
+    {
+        g_autofree char *path = g_dir_make_tmp("dff-rtsp-XXXXXX", nullptr);
+        path_ = path;
+    }
     ~Folder() { std::filesystem::remove_all(path_); }
     Folder(const Folder &) = delete;
     Folder &operator=(const Folder &) = delete;
