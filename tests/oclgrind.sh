@@ -19,7 +19,11 @@ check() { # NAME TEST FILTER
     timeout 900 oclgrind --data-races --max-errors 20 "$build/tests/unit/engine/$2" --gtest_filter="$3" \
         >"$log" 2>&1 || status=$?
     # A test that fails (1) is reported but forgiven: the simulator's mathematics are not the device's.
-    if [ $status -gt 1 ] || grep -qE '^(Invalid|Read-write|Write-write)' "$log" || ! grep -q '^\[.*tests* ran' "$log"; then
+    if grep -q 'OCLGRIND FATAL ERROR' "$log"; then
+        echo "FAIL $1: the simulator gave up: $(grep -A 2 'FATAL ERROR' "$log" | tail -2 | tr '\n' ' ')"
+        failed=$((failed + 1))
+    elif [ $status -gt 1 ] || grep -qE '^(Invalid|Read-write|Write-write)' "$log" ||
+            ! grep -q ' ran\.' "$log"; then
         echo "FAIL $1 (status $status)"
         grep -E '^(Invalid|Read-write|Write-write)' -A 12 "$log" | head -40
         failed=$((failed + 1))
