@@ -16,7 +16,9 @@
 #define SIDE 16
 
 /* Compilers for CPUs need to be told: a call or a short loop left in costs half the speed. */
+#ifndef INLINE /* a simulator may know better */
 #define INLINE inline __attribute__((always_inline))
+#endif
 #define UNROLL _Pragma("unroll")
 
 #define COLOUR_ONE 16
