@@ -39,57 +39,18 @@
  */
 #include "lenssweepsrc.h"
 
-#include "camera_properties.h"
-#include "plane_buffer.h"
+#include "lenssweepsrc_private.h"
 
-#include <atomic>
-#include <cmath>
 #include <exception>
 #include <gst/video/video.h>
 #include <memory>
 
-GST_DEBUG_CATEGORY_STATIC(gst_lens_sweep_src_debug);
-#define GST_CAT_DEFAULT gst_lens_sweep_src_debug
-
-struct GstLensSweepSrcState {
-    /* Guarded by the object lock, within which nothing is locked but the capture's own mutexes. */
-    CameraProperties properties;
-    bool changed = false;      /* rate, exposure or gain, while running */
-    dff::CaptureCounts counts; /* as of the last frame */
-    guint64 delivered = 0;
-    GstClockTime latency = GST_CLOCK_TIME_NONE;
-    GstClockTime max_latency = GST_CLOCK_TIME_NONE;
-    std::shared_ptr<dff::SweepCapture> capture; /* the pointer; set by start() and stop() */
-
-    std::atomic<bool> flushing = false;
-    std::atomic<gint64> playing_since_ns = 0; /* frames that arrived before are stale */
-
-    /* The streaming thread's alone, between start() and stop(). */
-    dff::CaptureSettings settings;
-    CameraFormat format;
-    bool running = false;
-    guint64 missing = 0; /* planes that were reported */
-    GstCaps *clock_caps = nullptr;
-};
-
-struct _GstLensSweepSrc {
-    GstPushSrc parent;
-    GstLensSweepSrcState *state;
-};
+GST_DEBUG_CATEGORY(gst_lens_sweep_src_debug);
 
 G_DEFINE_FINAL_TYPE(GstLensSweepSrc, gst_lens_sweep_src, GST_TYPE_PUSH_SRC)
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(lenssweepsrc, "lenssweepsrc", GST_RANK_NONE, GST_TYPE_LENS_SWEEP_SRC,
                                       GST_DEBUG_CATEGORY_INIT(gst_lens_sweep_src_debug, "lenssweepsrc", 0,
                                                               "camera behind a swept lens"))
-
-static void post_error(GstLensSweepSrc *self, const std::exception &error)
-{
-    if (dynamic_cast<const std::invalid_argument *>(&error))
-        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("The properties cannot be used: %s.", error.what()),
-                          (nullptr));
-    else
-        GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("%s", error.what()), ("camera, lens or line"));
-}
 
 static void put_capture(GstLensSweepSrc *self, std::shared_ptr<dff::SweepCapture> capture)
 {
@@ -131,7 +92,7 @@ static gboolean start(GstBaseSrc *source)
                                : gst_caps_new_empty_simple("timestamp/x-camera");
         put_capture(self, std::move(capture));
     } catch (const std::exception &error) {
-        post_error(self, error);
+        gst_lens_sweep_src_post_error(self, error);
         return FALSE;
     }
     warn_of_blind_labels(self, state.settings);
@@ -175,7 +136,7 @@ static GstCaps *get_caps(GstBaseSrc *source, GstCaps *filter)
     try {
         caps = capture ? camera_caps(capture->camera(), frame_rate) : camera_template_caps();
     } catch (const std::exception &error) {
-        post_error(self, error);
+        gst_lens_sweep_src_post_error(self, error);
         return gst_caps_new_empty();
     }
     if (filter) {
@@ -192,7 +153,7 @@ static GstCaps *fixate(GstBaseSrc *source, GstCaps *caps)
     try {
         return fixate_camera_caps(self->state->capture->camera(), caps);
     } catch (const std::exception &error) {
-        post_error(self, error);
+        gst_lens_sweep_src_post_error(self, error);
         return gst_caps_fixate(caps);
     }
 }
@@ -223,184 +184,10 @@ static gboolean set_caps(GstBaseSrc *source, GstCaps *caps)
         state.format = format;
         state.running = false;
     } catch (const std::exception &error) {
-        post_error(self, error);
+        gst_lens_sweep_src_post_error(self, error);
         return FALSE;
     }
     return TRUE;
-}
-
-static void tell_latency(GstLensSweepSrc *self)
-{
-    const dff::SweepCapture &capture = *self->state->capture;
-    const auto period = static_cast<GstClockTime>(1e9 / self->state->settings.frame_rate());
-    GST_OBJECT_LOCK(self);
-    const GstClockTime before = self->state->latency;
-    self->state->latency = static_cast<GstClockTime>(capture.latency_ns());
-    self->state->max_latency = self->state->latency + capture.buffers() * period;
-    const bool other = before != self->state->latency;
-    GST_OBJECT_UNLOCK(self);
-    if (other)
-        gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
-}
-
-static void check_load(GstLensSweepSrc *self)
-{
-    const dff::LinkLoad load = self->state->capture->load();
-    GST_INFO_OBJECT(self, "%s", dff::describe(load).c_str());
-    const std::string complaint = dff::complaint(load);
-    if (!complaint.empty())
-        GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", complaint.c_str()), (nullptr));
-}
-
-/* The camera acquires from the first create() on, not before PLAYING. */
-static void run(GstLensSweepSrc *self)
-{
-    GstLensSweepSrcState &state = *self->state;
-    if (state.running)
-        return;
-    state.capture->start(*state.format.layout, state.format.width, state.format.height);
-    state.running = true;
-    check_load(self);
-    tell_latency(self);
-}
-
-/* False if nothing downstream takes the new frame rate. */
-static bool take_changes(GstLensSweepSrc *self)
-{
-    GstLensSweepSrcState &state = *self->state;
-    GST_OBJECT_LOCK(self);
-    const bool changed = std::exchange(state.changed, false);
-    dff::CaptureSettings settings = state.properties.capture;
-    GST_OBJECT_UNLOCK(self);
-    if (!changed)
-        return true;
-    settings.plan = state.settings.plan;
-    const bool rate_changed = settings.rate != state.settings.rate;
-    state.capture->change(settings);
-    state.settings.rate = settings.rate;
-    state.settings.exposure_us = settings.exposure_us;
-    check_load(self);
-    tell_latency(self);
-    if (!rate_changed)
-        return true;
-    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(GST_BASE_SRC_PAD(self));
-    caps = gst_caps_make_writable(caps);
-    gint numerator = 0;
-    gint denominator = 1;
-    gst_util_double_to_fraction(settings.frame_rate(), &numerator, &denominator);
-    gst_caps_set_simple(caps, "framerate", GST_TYPE_FRACTION, numerator, denominator, nullptr);
-    return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
-}
-
-/* The running time of a moment of CLOCK_MONOTONIC; none before the pipeline's base time. */
-static GstClockTime running_time_of(GstLensSweepSrc *self, gint64 host_ns)
-{
-    g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(self));
-    if (!clock)
-        return GST_CLOCK_TIME_NONE;
-    const auto now = static_cast<gint64>(gst_clock_get_time(clock));
-    const gint64 moment = now - (dff::host_now_ns() - host_ns);
-    const auto base = static_cast<gint64>(gst_element_get_base_time(GST_ELEMENT(self)));
-    return moment < base ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(moment - base);
-}
-
-/* Publishes the counts; a QoS message for planes that are missing. */
-static void report(GstLensSweepSrc *self)
-{
-    GstLensSweepSrcState &state = *self->state;
-    const dff::CaptureCounts counts = state.capture->counts();
-    GST_OBJECT_LOCK(self);
-    state.counts = counts;
-    const guint64 delivered = state.delivered;
-    GST_OBJECT_UNLOCK(self);
-    const guint64 missing = missing_planes(counts);
-    if (missing > state.missing) {
-        const GstClockTime now = running_time_of(self, dff::host_now_ns());
-        GstMessage *message = gst_message_new_qos(GST_OBJECT(self), TRUE, now, now, now, GST_CLOCK_TIME_NONE);
-        gst_message_set_qos_stats(message, GST_FORMAT_BUFFERS, delivered, missing);
-        gst_element_post_message(GST_ELEMENT(self), message);
-    }
-    state.missing = missing;
-}
-
-static GstBuffer *make_buffer(GstLensSweepSrc *self, dff::CapturedPlane plane)
-{
-    GstLensSweepSrcState &state = *self->state;
-    const dff::SweepCapture &capture = *state.capture;
-    const GstClockTime pts = running_time_of(self, plane.exposed_ns);
-    if (plane.frame.arrival_ns < state.playing_since_ns || !GST_CLOCK_TIME_IS_VALID(pts))
-        return nullptr; /* of a time when the pipeline did not play */
-    const PlaneOutput output{
-        state.format,
-        capture.plan().planes(),
-        capture.calibrated() ? capture.plan().power(plane.plane) : NAN,
-        capture.code(plane.plane),
-        static_cast<GstClockTime>(state.settings.exposure_us * 1000),
-        static_cast<GstClockTime>(1e9 / state.settings.frame_rate()),
-        state.clock_caps,
-    };
-    GstBuffer *buffer = plane_buffer(std::move(plane), output);
-    if (buffer)
-        GST_BUFFER_PTS(buffer) = pts;
-    return buffer;
-}
-
-static gint64 deadline_of(GstLensSweepSrc *self)
-{
-    GST_OBJECT_LOCK(self);
-    const GstClockTime timeout = self->state->properties.trigger_timeout;
-    GST_OBJECT_UNLOCK(self);
-    const gint64 last = self->state->capture->last_frame_ns();
-    return timeout > static_cast<GstClockTime>(G_MAXINT64 - last) ? G_MAXINT64
-                                                                  : last + static_cast<gint64>(timeout);
-}
-
-/* One step: a buffer, or null if none is there yet. */
-static GstFlowReturn step(GstLensSweepSrc *self, GstBuffer **buffer)
-{
-    GstLensSweepSrcState &state = *self->state;
-    run(self);
-    if (!take_changes(self))
-        return GST_FLOW_NOT_NEGOTIATED;
-    const gint64 deadline = deadline_of(self);
-    if (dff::host_now_ns() >= deadline) {
-        GST_ELEMENT_ERROR(
-            self, RESOURCE, READ,
-            ("No frame came within trigger-timeout. Check that the sequencer runs and is wired to the "
-             "camera's %s.",
-             state.settings.trigger_source.c_str()),
-            (nullptr));
-        return GST_FLOW_ERROR;
-    }
-    auto plane = state.capture->next(deadline);
-    report(self);
-    if (plane)
-        *buffer = make_buffer(self, std::move(*plane));
-    return GST_FLOW_OK;
-}
-
-static GstFlowReturn create(GstPushSrc *source, GstBuffer **buffer)
-{
-    auto *self = GST_LENS_SWEEP_SRC(source);
-    GstLensSweepSrcState &state = *self->state;
-    *buffer = nullptr;
-    try {
-        while (!*buffer) {
-            if (state.flushing)
-                return GST_FLOW_FLUSHING;
-            const GstFlowReturn flow = step(self, buffer);
-            if (flow != GST_FLOW_OK)
-                return flow;
-        }
-    } catch (const std::exception &error) {
-        post_error(self, error);
-        return GST_FLOW_ERROR;
-    }
-    GST_OBJECT_LOCK(self);
-    GST_BUFFER_OFFSET(*buffer) = state.delivered++;
-    GST_BUFFER_OFFSET_END(*buffer) = state.delivered;
-    GST_OBJECT_UNLOCK(self);
-    return GST_FLOW_OK;
 }
 
 static gboolean query(GstBaseSrc *source, GstQuery *query)
@@ -493,7 +280,7 @@ static void gst_lens_sweep_src_class_init(GstLensSweepSrcClass *klass)
     source_class->fixate = fixate;
     source_class->set_caps = set_caps;
     source_class->query = query;
-    GST_PUSH_SRC_CLASS(klass)->create = create;
+    GST_PUSH_SRC_CLASS(klass)->create = gst_lens_sweep_src_create;
 
     g_autoptr(GstCaps) caps = camera_template_caps();
     gst_element_class_add_pad_template(element_class,
