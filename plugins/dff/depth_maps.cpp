@@ -23,8 +23,9 @@ DepthMaps::DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, c
         if (output->format() == GST_VIDEO_FORMAT_GRAY16_LE)
             gst_buffer_add_depth_meta(map.buffer, &depth);
         /* Without a reference to the buffer, which then can still be given metas. */
-        gst_video_frame_map(&map.frame, &info, map.buffer,
-                            static_cast<GstMapFlags>(GST_MAP_WRITE | GST_VIDEO_FRAME_MAP_FLAG_NO_REF));
+        gst_video_frame_map(
+            &map.frame, &info, map.buffer,
+            static_cast<GstMapFlags>(int{GST_MAP_WRITE} | int{GST_VIDEO_FRAME_MAP_FLAG_NO_REF}));
         maps_.push_back(std::move(map));
     }
 }

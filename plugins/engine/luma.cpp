@@ -28,7 +28,7 @@ std::string Luma::build_options(PixelFormat format)
 
 std::string colour_options(PixelFormat format)
 {
-    const std::string options = Luma::build_options(format);
+    std::string options = Luma::build_options(format);
     if (is_interleaved(format))
         return options + " -DINTERLEAVED -DCHANNELS=" + std::to_string(colour_channels(format).s[0]);
     if (format == PixelFormat::I420)

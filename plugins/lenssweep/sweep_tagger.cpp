@@ -31,15 +31,13 @@ SweepTagger::SweepTagger(const TagSettings &settings) : settings_(settings), pla
 
 void SweepTagger::open_step(std::unique_ptr<dff::Lens> lens)
 {
-    auto *stepped = dynamic_cast<dff::SteppedLens *>(lens.get());
-    if (!stepped)
+    if (!dynamic_cast<dff::SteppedLens *>(lens.get()))
         throw std::invalid_argument("mode=step needs a lens that can be moved, as lens=v4l2:/dev/video0 or "
                                     "lens=max14574:/dev/i2c-1");
     lens->prepare({plan_});
     lens->start();
-    lens.release();
-    step_ = std::make_unique<StepTagger>(std::unique_ptr<dff::SteppedLens>(stepped), plan_.planes(),
-                                         settings_.settle_frames);
+    std::unique_ptr<dff::SteppedLens> stepped(dynamic_cast<dff::SteppedLens *>(lens.release()));
+    step_ = std::make_unique<StepTagger>(std::move(stepped), plan_.planes(), settings_.settle_frames);
 }
 
 void SweepTagger::open_sync(std::unique_ptr<dff::Lens> lens)
@@ -47,9 +45,9 @@ void SweepTagger::open_sync(std::unique_ptr<dff::Lens> lens)
     if (dynamic_cast<dff::SteppedLens *>(lens.get()) || settings_.sync_line.empty())
         throw std::invalid_argument("mode=sync needs sync-line, as gpiochip0:5, and lens=fpga: or none");
     auto line = dff::open_edge_line(settings_.sync_line);
-    std::unique_ptr<dff::SequencedLens> sequencer(dynamic_cast<dff::SequencedLens *>(lens.get()));
-    if (sequencer)
-        lens.release();
+    std::unique_ptr<dff::SequencedLens> sequencer;
+    if (dynamic_cast<dff::SequencedLens *>(lens.get()))
+        sequencer.reset(dynamic_cast<dff::SequencedLens *>(lens.release()));
     sync_ = std::make_unique<SyncTagger>(std::move(line), std::move(sequencer), plan_);
 }
 

@@ -43,10 +43,12 @@ void SyncCycle::add_edge(uint64_t time_ns)
 /* The sweep that a frame belongs to: its plane 0 may be stamped a little before the edge. */
 std::optional<SyncCycle::Sweep> SyncCycle::sweep_at(uint64_t time_ns) const
 {
-    for (auto sweep = sweeps_.rbegin(); sweep != sweeps_.rend(); ++sweep)
-        if (static_cast<double>(time_ns) >= static_cast<double>(sweep->begin_ns) - tolerance * sweep->slot_ns)
-            return *sweep;
-    return std::nullopt;
+    const auto begun = [time_ns](const Sweep &sweep) {
+        return static_cast<double>(time_ns) >=
+               static_cast<double>(sweep.begin_ns) - tolerance * sweep.slot_ns;
+    };
+    const auto sweep = std::find_if(sweeps_.rbegin(), sweeps_.rend(), begun);
+    return sweep != sweeps_.rend() ? std::optional(*sweep) : std::nullopt;
 }
 
 std::optional<PlaneLabel> SyncCycle::label(uint64_t time_ns)
