@@ -15,7 +15,7 @@ from rtsp_client import Client, Server, Witness
 
 CYCLES = int(os.environ.get('DFF_RTSP_CYCLES', 10))
 SECONDS = float(os.environ.get('DFF_RTSP_SECONDS', 2))
-LONGEST_SILENCE = 5.0  # seconds; there are 25 frames a second
+LONGEST_SILENCE = 2.0  # seconds; there are 25 frames a second
 PIN_SECONDS = 1.5      # a media lives on for so long after its last client
 GROWTH_MB = 24         # what allocators may keep
 DEPTH = ('videotestsrc is-live=true pattern=snow ! '
