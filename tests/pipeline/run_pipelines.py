@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""Runs the pipelines printed in the given files and folders, as printed, and speaks TAP.
+"""Runs the pipelines printed in the given files and folders, as printed, and speaks TAP; why one fails is on stderr.
 
     *.gst           one pipeline a file, below its comments
     *.md            every gst-launch-1.0 command of the code blocks
@@ -92,8 +92,9 @@ def main(paths):
             problem = run(command, folder)
             failures += problem is not None
             print(f'{"ok" if problem is None else "not ok"} {number} - {name}: {command.replace("#", "")}', flush=True)
-            if problem:
-                print('\n'.join('# ' + line for line in problem.splitlines()[:200]), flush=True)
+            if problem:  # on stderr: Meson prints nothing else of a TAP test that failed
+                lines = [command, *problem.splitlines()[:200]]
+                print('\n'.join('# ' + line for line in lines), file=sys.stderr, flush=True)
     return failures > 0
 
 
