@@ -30,6 +30,7 @@
 
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
+#include "focalstack/focalstackalign_properties.h"
 #include "focalstack/stack_aligner.h"
 #include "focalstack/stack_buffer.h"
 #include "focalstack/stack_pictures.h"
@@ -42,8 +43,6 @@ GST_DEBUG_CATEGORY_STATIC(focalstackalign_debug);
 
 namespace {
 
-enum class AlignMode { Estimate, Calibration };
-
 struct FocalStackAlignState {
     /* Guarded by the sink pad's stream lock. */
     std::optional<dff::StackPool> pool;
@@ -51,32 +50,17 @@ struct FocalStackAlignState {
     std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
 
     /* Guarded by the object's lock. */
-    AlignMode mode = AlignMode::Estimate;
-    std::string calibration_file;
+    dff::AlignSettings settings;
     dff::AlignmentStatistics statistics;
     GstClockTime latency = 0;
 };
 
-enum { PROP_MODE = 1, PROP_CALIBRATION, PROP_STATS };
+constexpr guint property_stats = dff::align_properties_end;
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
 GstStaticPadTemplate source_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
-
-GType align_mode_get_type()
-{
-    static GType type;
-    static const GEnumValue values[] = {
-        {static_cast<int>(AlignMode::Estimate), "Found anew in the pictures of each stack", "estimate"},
-        {static_cast<int>(AlignMode::Calibration),
-         "From the file calibration, for rigs that always do the same", "calibration"},
-        {0, nullptr, nullptr},
-    };
-    if (g_once_init_enter(&type))
-        g_once_init_leave(&type, g_enum_register_static("GstFocalStackAlignMode", values));
-    return type;
-}
 
 } // namespace
 
@@ -275,18 +259,16 @@ gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *quer
 gboolean load_calibration(GstFocalStackAlign *self)
 {
     FocalStackAlignState *state = self->state;
-    AlignMode mode;
-    std::string file;
+    dff::AlignSettings settings;
     {
         const ObjectLock lock(self);
-        mode = state->mode;
-        file = state->calibration_file;
+        settings = state->settings;
     }
     state->calibration.reset();
-    if (mode == AlignMode::Estimate)
+    if (settings.mode == dff::AlignMode::Estimate)
         return TRUE;
     try {
-        state->calibration = dff::AlignmentCalibration::load(file);
+        state->calibration = dff::AlignmentCalibration::load(settings.calibration);
         return TRUE;
     } catch (const std::runtime_error &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
@@ -316,36 +298,18 @@ gboolean stop(GstBaseTransform *base)
 void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
     const ObjectLock lock(object);
-    switch (id) {
-    case PROP_MODE:
-        GST_FOCAL_STACK_ALIGN(object)->state->mode = static_cast<AlignMode>(g_value_get_enum(value));
-        break;
-    case PROP_CALIBRATION:
-        GST_FOCAL_STACK_ALIGN(object)->state->calibration_file =
-            g_value_get_string(value) ? g_value_get_string(value) : "";
-        break;
-    default:
+    if (!dff::set_align_property(GST_FOCAL_STACK_ALIGN(object)->state->settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-    }
 }
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
     const ObjectLock lock(object);
     const FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(object)->state;
-    switch (id) {
-    case PROP_MODE:
-        g_value_set_enum(value, static_cast<int>(state->mode));
-        break;
-    case PROP_CALIBRATION:
-        g_value_set_string(value, state->calibration_file.c_str());
-        break;
-    case PROP_STATS:
+    if (id == property_stats)
         g_value_take_boxed(value, state->statistics.to_structure());
-        break;
-    default:
+    else if (!dff::get_align_property(state->settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-    }
 }
 
 void finalize(GObject *object)
@@ -356,21 +320,7 @@ void finalize(GObject *object)
 
 void install_properties(GObjectClass *object_class)
 {
-    constexpr auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS);
-    constexpr auto read_only = static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS);
-
-    g_object_class_install_property(
-        object_class, PROP_MODE,
-        g_param_spec_enum("mode", "Mode", "Where the warp of each plane comes from", align_mode_get_type(),
-                          static_cast<int>(AlignMode::Estimate),
-                          static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_READY)));
-    g_object_class_install_property(
-        object_class, PROP_CALIBRATION,
-        g_param_spec_string(
-            "calibration", "Calibration",
-            "File of mode=calibration (YAML): image_width, image_height, and planes, a list, nearest "
-            "first, of dx and dy (pixels), scale and rotation (degrees) as stats tells them",
-            "", static_cast<GParamFlags>(flags | GST_PARAM_MUTABLE_READY)));
+    dff::install_align_properties(object_class);
     /**
      * GstFocalStackAlign:stats:
      *
@@ -381,12 +331,12 @@ void install_properties(GObjectClass *object_class)
      * "trusted" (boolean), whether this was found in the pictures.
      */
     g_object_class_install_property(
-        object_class, PROP_STATS,
+        object_class, property_stats,
         g_param_spec_boxed(
             "stats", "Statistics",
             "Stacks aligned, planes not trusted, and for each plane of the last stack dx and dy "
             "(pixels), scale, rotation (degrees) and whether they are trusted",
-            GST_TYPE_STRUCTURE, read_only));
+            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 }
 
 } // namespace
@@ -402,7 +352,6 @@ static void gst_focal_stack_align_class_init(GstFocalStackAlignClass *klass)
     object_class->get_property = get_property;
     object_class->finalize = finalize;
     install_properties(object_class);
-    gst_type_mark_as_plugin_api(align_mode_get_type(), static_cast<GstPluginAPIFlags>(0));
 
     gst_element_class_add_static_pad_template(element_class, &sink_template);
     gst_element_class_add_static_pad_template(element_class, &source_template);

@@ -29,6 +29,7 @@
  */
 #include "focalstack/focalstackmux.h"
 
+#include "focalstack/focalstackmux_properties.h"
 #include "focalstack/mux_core.h"
 #include "focalstack/stack_caps.h"
 
@@ -46,7 +47,7 @@ struct FocalStackMuxState {
     dff::MuxSettings settings; /* guarded by the object's lock */
 };
 
-enum { PROP_PLANES = 1, PROP_ON_MISSING, PROP_WINDOW, PROP_STATS };
+constexpr guint property_stats = dff::mux_properties_end;
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(FOCAL_STACK_FRAME_CAPS));
@@ -54,33 +55,6 @@ GstStaticPadTemplate plane_template = GST_STATIC_PAD_TEMPLATE("sink_%u", GST_PAD
                                                               GST_STATIC_CAPS(FOCAL_STACK_FRAME_CAPS));
 GstStaticPadTemplate source_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
-
-GType on_missing_get_type()
-{
-    static GType type;
-    static const GEnumValue values[] = {
-        {static_cast<int>(dff::OnMissing::Drop), "Do not send the stack", "drop"},
-        {static_cast<int>(dff::OnMissing::Hold), "Take the plane of the last stack", "hold"},
-        {static_cast<int>(dff::OnMissing::Repeat), "Take the neighbouring plane of this sweep", "repeat"},
-        {0, nullptr, nullptr},
-    };
-    if (g_once_init_enter(&type))
-        g_once_init_leave(&type, g_enum_register_static("GstFocalStackMuxOnMissing", values));
-    return type;
-}
-
-GType window_get_type()
-{
-    static GType type;
-    static const GEnumValue values[] = {
-        {static_cast<int>(dff::StackWindow::Sweep), "One stack for each sweep", "sweep"},
-        {static_cast<int>(dff::StackWindow::Rolling), "A stack of the last planes at each frame", "rolling"},
-        {0, nullptr, nullptr},
-    };
-    if (g_once_init_enter(&type))
-        g_once_init_leave(&type, g_enum_register_static("GstFocalStackMuxWindow", values));
-    return type;
-}
 
 } // namespace
 
@@ -295,48 +269,25 @@ GstStructure *create_stats(const dff::MuxStatistics &counts)
 void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
     GstFocalStackMux *self = GST_FOCAL_STACK_MUX(object);
-    dff::MuxSettings &settings = self->state->settings;
-
     GST_OBJECT_LOCK(self);
-    switch (id) {
-    case PROP_PLANES:
-        settings.planes = g_value_get_uint(value);
-        break;
-    case PROP_ON_MISSING:
-        settings.on_missing = static_cast<dff::OnMissing>(g_value_get_enum(value));
-        break;
-    case PROP_WINDOW:
-        settings.window = static_cast<dff::StackWindow>(g_value_get_enum(value));
-        break;
-    default:
-        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-    }
+    const bool known = dff::set_mux_property(self->state->settings, id, value);
     GST_OBJECT_UNLOCK(self);
+    if (!known)
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
 }
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
     GstFocalStackMux *self = GST_FOCAL_STACK_MUX(object);
-    GST_OBJECT_LOCK(self);
-    const dff::MuxSettings settings = self->state->settings;
-    GST_OBJECT_UNLOCK(self);
-
-    switch (id) {
-    case PROP_PLANES:
-        g_value_set_uint(value, settings.planes);
-        break;
-    case PROP_ON_MISSING:
-        g_value_set_enum(value, static_cast<int>(settings.on_missing));
-        break;
-    case PROP_WINDOW:
-        g_value_set_enum(value, static_cast<int>(settings.window));
-        break;
-    case PROP_STATS:
+    if (id == property_stats) {
         g_value_take_boxed(value, create_stats(self->state->core.statistics()));
-        break;
-    default:
-        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+        return;
     }
+    GST_OBJECT_LOCK(self);
+    const bool known = dff::get_mux_property(self->state->settings, id, value);
+    GST_OBJECT_UNLOCK(self);
+    if (!known)
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
 }
 
 void finalize(GObject *object)
@@ -347,26 +298,9 @@ void finalize(GObject *object)
 
 void install_properties(GObjectClass *object_class)
 {
-    const auto settable =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
+    dff::install_mux_properties(object_class);
     g_object_class_install_property(
-        object_class, PROP_PLANES,
-        g_param_spec_uint("planes", "Planes",
-                          "Planes a stack, 2 to 64 (0: as the frames' metas or the pads say)", 0,
-                          GST_FOCAL_STACK_MAX_PLANES, 0, settable));
-    g_object_class_install_property(
-        object_class, PROP_ON_MISSING,
-        g_param_spec_enum(
-            "on-missing", "On missing",
-            "What becomes of a stack of which planes are missing; a sweep of which no frame came "
-            "is always dropped",
-            on_missing_get_type(), static_cast<int>(dff::OnMissing::Drop), settable));
-    g_object_class_install_property(object_class, PROP_WINDOW,
-                                    g_param_spec_enum("window", "Window", "Which frames make a stack",
-                                                      window_get_type(),
-                                                      static_cast<int>(dff::StackWindow::Sweep), settable));
-    g_object_class_install_property(
-        object_class, PROP_STATS,
+        object_class, property_stats,
         g_param_spec_boxed(
             "stats", "Statistics",
             "Counts since the start, all guint64: frames that came, stacks sent, dropped-stacks; "
@@ -397,8 +331,6 @@ static void gst_focal_stack_mux_class_init(GstFocalStackMuxClass *klass)
     gst_element_class_set_static_metadata(element_class, "Focal stack muxer", "Muxer/Video",
                                           "Puts the frames of focus sweeps together to focal stacks",
                                           "gst-plugins-dff authors");
-    gst_type_mark_as_plugin_api(on_missing_get_type(), static_cast<GstPluginAPIFlags>(0));
-    gst_type_mark_as_plugin_api(window_get_type(), static_cast<GstPluginAPIFlags>(0));
 }
 
 static void gst_focal_stack_mux_init(GstFocalStackMux *self)
