@@ -19,59 +19,43 @@
  */
 #include "dffdepth.h"
 
-#include "depth_maps.h"
+#include "depth_statistics.h"
 #include "dffdepth_properties.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
+#include "output_pads.h"
 #include "stack_depth.h"
 
-#include <algorithm>
-#include <gst/base/gstflowcombiner.h>
 #include <gst/dff/dff.h>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 GST_DEBUG_CATEGORY_STATIC(dff_depth_debug);
 #define GST_CAT_DEFAULT dff_depth_debug
-
-using dff::DepthOutput;
 
 namespace {
 
 constexpr guint property_stats = dff::depth_properties_end;
 
-struct Statistics {
-    guint64 stacks = 0;
-    guint64 without_depth = 0;
-    GstClockTime compute_time = 0; /* of the last stack */
-    dff::StageTimes stages;
-    std::optional<float> residual; /* what the solver left, in parts of the right-hand side */
-};
-
 /* What dffdepth knows between two buffers. */
 struct State {
-    /* Guards settings, outputs, flows and statistics. Held for copies only: never while the engine works,
-     * while a pad pushes, or around another lock but the element's own. */
+    /* Guards settings, statistics and latency. Held for copies only: never while the engine works or a pad
+     * pushes. */
     std::mutex mutex;
     dff::DepthSettings settings;
     bool settings_changed = true;
-    std::vector<std::shared_ptr<DepthOutput>> outputs; /* the depth first */
-    GstFlowCombiner *flows = gst_flow_combiner_new();
-    Statistics statistics;
+    dff::DepthStatistics statistics;
     GstClockTime latency = 0;
+
+    dff::OutputPads outputs;
 
     /* The streaming thread's own. */
     dff::StackDepth depth;
     bool has_caps = false;
     GstSegment segment{};
     guint64 next_stack = 0;
-
-    ~State() { gst_flow_combiner_free(flows); }
 };
-
-using Outputs = std::vector<std::shared_ptr<DepthOutput>>;
 
 } // namespace
 
@@ -104,10 +88,10 @@ static GstStaticPadTemplate confidence_template =
 static GstStaticPadTemplate motion_template =
     GST_STATIC_PAD_TEMPLATE("motion", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
 
-static Outputs outputs_of(State &state)
+static dff::DepthSettings settings_of(State &state)
 {
     const std::lock_guard lock(state.mutex);
-    return state.outputs;
+    return state.settings;
 }
 
 /* The settings, if they have changed since the last call. */
@@ -127,11 +111,7 @@ static void account(GstDffDepth *self, GstClockTime compute_time, bool known)
     bool slower = false;
     {
         const std::lock_guard lock(state.mutex);
-        state.statistics.stacks++;
-        state.statistics.without_depth += !known;
-        state.statistics.compute_time = compute_time;
-        state.statistics.stages = state.depth.times();
-        state.statistics.residual = state.depth.residual();
+        state.statistics.add(state.depth, known, compute_time);
         slower = compute_time > state.latency + state.latency / 4 + GST_MSECOND;
         if (slower)
             state.latency = compute_time;
@@ -153,19 +133,6 @@ static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *st
     }
 }
 
-static GstFlowReturn push(State &state, dff::DepthMaps &maps)
-{
-    GstFlowReturn flow = GST_FLOW_NOT_LINKED;
-    maps.push([&](GstPad *pad, GstFlowReturn pushed) {
-        const std::lock_guard lock(state.mutex);
-        const bool released = std::none_of(state.outputs.begin(), state.outputs.end(),
-                                           [&](const auto &output) { return output->pad() == pad; });
-        if (!released) /* the flow of a pad that has gone in the meantime is nobody's */
-            flow = gst_flow_combiner_update_pad_flow(state.flows, pad, pushed);
-    });
-    return flow;
-}
-
 static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer *buffer)
 {
     GstDffDepth *self = GST_DFF_DEPTH(parent);
@@ -184,7 +151,7 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         if (const auto settings = changed_settings(state))
             state.depth.set_settings(*settings);
         const GstDepthInfo depth = state.depth.prepare(stack, state.next_stack);
-        dff::DepthMaps maps(outputs_of(state), state.depth.stack().frame, depth, state.segment);
+        dff::DepthMaps maps(state.outputs.outputs(), state.depth.stack().frame, depth, state.segment);
 
         const GstClockTime start = gst_util_get_timestamp();
         const bool known = compute(self, mapped.view(), stack, maps);
@@ -193,7 +160,7 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         maps.stamp(stack, state.next_stack);
         account(self, gst_util_get_timestamp() - start, known);
         state.next_stack++;
-        return push(state, maps);
+        return state.outputs.push(maps);
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
     } catch (const std::invalid_argument &error) {
@@ -236,8 +203,7 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
 
     switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
-        for (const auto &output : outputs_of(state))
-            output->restart();
+        state.outputs.restart();
         gst_event_unref(event); /* each output opens with its own */
         return TRUE;
     case GST_EVENT_CAPS: {
@@ -254,17 +220,12 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
         gst_event_unref(event);
         return TRUE;
     }
-    case GST_EVENT_FLUSH_STOP: {
-        for (const auto &output : outputs_of(state))
-            output->restart();
-        const std::lock_guard lock(state.mutex);
-        gst_flow_combiner_reset(state.flows);
+    case GST_EVENT_FLUSH_STOP:
+        state.outputs.restart();
         break;
-    }
     default:
         if (GST_EVENT_IS_SERIALIZED(event))
-            for (const auto &output : outputs_of(state))
-                output->open();
+            state.outputs.open();
         break;
     }
     return gst_pad_event_default(pad, parent, event);
@@ -289,15 +250,9 @@ static gboolean gst_dff_depth_src_query(GstPad *pad, GstObject *parent, GstQuery
 
 static void add_output(GstDffDepth *self, GstPad *pad, GstVideoFormat format)
 {
-    State &state = *self->state;
-
     gst_pad_set_query_function(pad, gst_dff_depth_src_query);
     gst_pad_use_fixed_caps(pad);
-    {
-        const std::lock_guard lock(state.mutex);
-        gst_flow_combiner_add_pad(state.flows, pad);
-        state.outputs.push_back(std::make_shared<DepthOutput>(GST_ELEMENT(self), pad, format));
-    }
+    self->state->outputs.add(GST_ELEMENT(self), pad, format);
     gst_element_add_pad(GST_ELEMENT(self), pad);
 }
 
@@ -319,12 +274,7 @@ static GstPad *gst_dff_depth_request_new_pad(GstElement *element, GstPadTemplate
 
 static void gst_dff_depth_release_pad(GstElement *element, GstPad *pad)
 {
-    State &state = *GST_DFF_DEPTH(element)->state;
-    {
-        const std::lock_guard lock(state.mutex);
-        gst_flow_combiner_remove_pad(state.flows, pad);
-        std::erase_if(state.outputs, [&](const auto &output) { return output->pad() == pad; });
-    }
+    GST_DFF_DEPTH(element)->state->outputs.remove(pad);
     gst_pad_set_active(pad, FALSE);
     gst_element_remove_pad(element, pad);
 }
@@ -332,13 +282,8 @@ static void gst_dff_depth_release_pad(GstElement *element, GstPad *pad)
 static bool open_device(GstDffDepth *self)
 {
     State &state = *self->state;
-    std::string wish;
-    {
-        const std::lock_guard lock(state.mutex);
-        wish = state.settings.device;
-    }
     try {
-        std::shared_ptr<dff::Device> device = dff::Device::open(wish);
+        std::shared_ptr<dff::Device> device = dff::Device::open(settings_of(state).device);
         GST_INFO_OBJECT(self, "computing on %s", device->name().c_str());
         state.depth.start(std::move(device));
         return true;
@@ -351,11 +296,7 @@ static bool open_device(GstDffDepth *self)
 static bool load_calibration(GstDffDepth *self)
 {
     State &state = *self->state;
-    std::string file;
-    {
-        const std::lock_guard lock(state.mutex);
-        file = state.settings.calibration;
-    }
+    const std::string file = settings_of(state).calibration;
     try {
         state.depth.set_calibration(file.empty() ? std::nullopt
                                                  : std::optional(dff::read_camera_calibration(file)));
@@ -382,30 +323,14 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
         state.has_caps = false;
         state.next_stack = 0;
-        for (const auto &output : outputs_of(state))
-            output->restart();
+        state.outputs.restart();
         const std::lock_guard lock(state.mutex);
-        gst_flow_combiner_reset(state.flows);
         state.statistics = {};
         state.latency = 0;
     }
     if (transition == GST_STATE_CHANGE_READY_TO_NULL)
         state.depth.stop();
     return result;
-}
-
-static GstStructure *make_stats(State &state)
-{
-    const std::lock_guard lock(state.mutex);
-    const Statistics &s = state.statistics;
-    GstStructure *stats = gst_structure_new(
-        "dffdepth-stats", "stacks", G_TYPE_UINT64, s.stacks, "without-depth", G_TYPE_UINT64, s.without_depth,
-        "compute-ms", G_TYPE_DOUBLE, static_cast<gdouble>(s.compute_time) / 1e6, nullptr);
-    if (s.residual)
-        gst_structure_set(stats, "residual", G_TYPE_DOUBLE, static_cast<gdouble>(*s.residual), nullptr);
-    for (const auto &[stage, milliseconds] : s.stages)
-        gst_structure_set(stats, (stage + "-ms").c_str(), G_TYPE_DOUBLE, milliseconds, nullptr);
-    return stats;
 }
 
 static void gst_dff_depth_set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
@@ -420,12 +345,10 @@ static void gst_dff_depth_set_property(GObject *object, guint id, const GValue *
 static void gst_dff_depth_get_property(GObject *object, guint id, GValue *value, GParamSpec *pspec)
 {
     State &state = *GST_DFF_DEPTH(object)->state;
-    if (id == property_stats) {
-        g_value_take_boxed(value, make_stats(state));
-        return;
-    }
     const std::lock_guard lock(state.mutex);
-    if (!dff::get_depth_property(state.settings, id, value))
+    if (id == property_stats)
+        g_value_take_boxed(value, state.statistics.to_structure());
+    else if (!dff::get_depth_property(state.settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
