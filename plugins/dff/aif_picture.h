@@ -30,9 +30,7 @@ public:
 private:
     void ensure_composer();
     void ensure_encoder(GstBuffer *stack, GstBuffer *depth);
-    void check_depth_size() const;
     void fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend, GstBuffer *picture);
-    void stamp(GstBuffer *stack, GstBuffer *depth, GstBuffer *picture);
 
     std::shared_ptr<Device> device_;
     std::unique_ptr<AifComposer> composer_;

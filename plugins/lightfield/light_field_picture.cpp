@@ -2,39 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "light_field_picture.h"
 
+#include "gstcl/mapped_frame.h"
+
 #include <cmath>
 #include <stdexcept>
 
 namespace dff {
 
 namespace {
-
-/* A frame mapped as long as this lives. */
-class MappedFrame {
-public:
-    MappedFrame(const GstVideoInfo &info, GstBuffer *buffer, GstMapFlags flags)
-    {
-        if (!gst_video_frame_map(&frame_, &info, buffer, flags))
-            throw std::runtime_error("A frame's memory does not hold what its caps say");
-    }
-    ~MappedFrame() { gst_video_frame_unmap(&frame_); }
-
-    MappedFrame(const MappedFrame &) = delete;
-    MappedFrame &operator=(const MappedFrame &) = delete;
-
-    size_t stride() const { return static_cast<size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&frame_, 0)); }
-
-    std::span<std::byte> memory() const
-    {
-        const auto row_bytes = static_cast<size_t>(GST_VIDEO_FRAME_WIDTH(&frame_)) *
-                               static_cast<size_t>(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, 0));
-        return {static_cast<std::byte *>(GST_VIDEO_FRAME_PLANE_DATA(&frame_, 0)),
-                stride() * static_cast<size_t>(GST_VIDEO_FRAME_HEIGHT(&frame_) - 1) + row_bytes};
-    }
-
-private:
-    GstVideoFrame frame_;
-};
 
 PixelFormat pixel_format(GstVideoFormat format)
 {
@@ -150,17 +125,6 @@ void LightFieldPicture::read_facts(GstBuffer *depth)
         renderer_->set_positions(sweep_positions(facts_));
 }
 
-void LightFieldPicture::check_depth_size() const
-{
-    if (size_of(depth_) == size_of(color_))
-        return;
-    g_autofree gchar *text = g_strdup_printf("The depth map is %dx%d, the colour picture %dx%d: scale the "
-                                             "depth with nearest-neighbour, or neither",
-                                             GST_VIDEO_INFO_WIDTH(&depth_), GST_VIDEO_INFO_HEIGHT(&depth_),
-                                             GST_VIDEO_INFO_WIDTH(&color_), GST_VIDEO_INFO_HEIGHT(&color_));
-    throw std::runtime_error(text);
-}
-
 void LightFieldPicture::render(GstBuffer *color, GstBuffer *depth, GstBuffer *picture)
 {
     const MappedFrame colors(color_, color, GST_MAP_READ);
@@ -179,7 +143,7 @@ void LightFieldPicture::render(GstBuffer *color, GstBuffer *depth, GstBuffer *pi
 GstBuffer *LightFieldPicture::compose(GstBuffer *color, GstBuffer *depth)
 {
     if (depth) {
-        check_depth_size();
+        require_size(depth_, color_, "colour picture");
         read_facts(depth);
     }
     ensure_renderer();
@@ -187,11 +151,7 @@ GstBuffer *LightFieldPicture::compose(GstBuffer *color, GstBuffer *depth)
     if (!picture)
         throw std::runtime_error("There is no memory left for another picture");
     render(color, depth, picture);
-    GST_BUFFER_PTS(picture) = GST_BUFFER_PTS(color);
-    GST_BUFFER_DURATION(picture) = GST_BUFFER_DURATION(color);
-    GST_BUFFER_OFFSET(picture) = next_picture_++;
-    if (const GstReferenceTimestampMeta *clock = gst_buffer_get_reference_timestamp_meta(color, nullptr))
-        gst_buffer_add_reference_timestamp_meta(picture, clock->reference, clock->timestamp, clock->duration);
+    stamp_picture(picture, color, color, next_picture_++);
     return reinterpret_cast<GstBuffer *>(g_steal_pointer(&picture));
 }
 

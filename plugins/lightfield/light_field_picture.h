@@ -39,7 +39,6 @@ public:
 private:
     void ensure_renderer();
     void read_facts(GstBuffer *depth);
-    void check_depth_size() const;
     void render(GstBuffer *color, GstBuffer *depth, GstBuffer *picture);
 
     std::shared_ptr<Device> device_;

@@ -42,52 +42,14 @@
 
 #include "depth_matching.h"
 #include "display_preset.h"
-#include "gstcl/engine_message.h"
+#include "gstcl/depth_composer.h"
 #include "light_field_picture.h"
 #include "lightfieldcompose_properties.h"
 
 #include <gst/dff/dff.h>
-#include <mutex>
-#include <optional>
-#include <string>
 
 GST_DEBUG_CATEGORY_STATIC(light_field_compose_debug);
 #define GST_CAT_DEFAULT light_field_compose_debug
-
-namespace {
-
-enum Property : guint { PropertyDevice = dff::light_field_properties_end, PropertyFileSuffix, PropertyStats };
-
-struct State {
-    /* Guards the properties and statistics; nothing else is locked under it but the element's own lock. */
-    std::mutex mutex;
-    dff::LightFieldSettings settings;
-    bool settings_changed = true;
-    std::string device_wish;
-    std::string file_suffix;
-    guint64 pictures = 0;
-    guint64 without_depth = 0;
-    GstClockTime compute_time = 0;
-    GstClockTime latency = 0;
-
-    /* The streaming thread's own. */
-    dff::LightFieldPicture picture;
-    std::optional<dff::LightFieldPlan> plan; /* as of the last negotiation */
-    bool has_color_caps = false;
-};
-
-} // namespace
-
-struct _GstLightFieldCompose {
-    GstAggregator parent;
-    GstAggregatorPad *color_pad;
-    GstAggregatorPad *depth_pad;
-    State *state;
-};
-
-G_DEFINE_FINAL_TYPE(GstLightFieldCompose, gst_light_field_compose, GST_TYPE_AGGREGATOR)
-GST_ELEMENT_REGISTER_DEFINE(lightfieldcompose, "lightfieldcompose", GST_RANK_NONE,
-                            GST_TYPE_LIGHT_FIELD_COMPOSE)
 
 #define COLOR_CAPS GST_VIDEO_CAPS_MAKE("{ RGBx, BGRx, RGB, BGR }")
 
@@ -98,92 +60,150 @@ static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(COLOR_CAPS));
 
-static void account(GstLightFieldCompose *self, GstClockTime compute_time, bool with_depth)
-{
-    State &state = *self->state;
-    GstClockTime latency = 0;
+namespace {
+
+enum Property : guint { PropertyDevice = dff::light_field_properties_end, PropertyFileSuffix, PropertyStats };
+
+class State : public dff::DepthComposer {
+public:
+    explicit State(GstAggregator *element)
+        : DepthComposer(element, &color_template, &depth_template, "a colour picture and its depth")
     {
-        const std::lock_guard lock(state.mutex);
-        state.pictures++;
-        state.without_depth += !with_depth;
-        state.compute_time = compute_time;
-        if (compute_time <= state.latency + state.latency / 4 + GST_MSECOND)
-            return;
-        latency = state.latency = compute_time;
     }
-    gst_aggregator_set_latency(GST_AGGREGATOR(self), latency, latency);
+
+    /* The properties of light_field_settings.h and file-suffix; false for others. */
+    bool set_property(guint id, const GValue *value);
+    bool get_property(guint id, GValue *value);
+
+    /* Makes the plan that the next three speak of. Throws std::runtime_error. */
+    void make_plan();
+    const dff::LightFieldPlan &plan() const { return *plan_; }
+    const GstVideoInfo &color() const { return picture_.color(); }
+    void set_output(const GstVideoInfo &info);
+
+private:
+    void open_device(std::shared_ptr<dff::Device> device) override;
+    void close_device() override { picture_.stop(); }
+    bool set_main_caps(const GstCaps *caps) override;
+    bool set_depth_caps(const GstCaps *caps) override;
+    std::optional<GstBuffer *> matching_depth(GstAggregatorPad *color_pad, GstBuffer *color,
+                                              GstAggregatorPad *depth_pad) override
+    {
+        return dff::matching_depth(color_pad, color, depth_pad);
+    }
+    GstBuffer *compose(GstBuffer *color, GstBuffer *depth) override;
+    void apply_settings();
+
+    /* Under the mutex. */
+    dff::LightFieldSettings settings_;
+    bool settings_changed_ = true;
+    std::string file_suffix_;
+
+    /* The streaming thread's own. */
+    dff::LightFieldPicture picture_;
+    std::optional<dff::LightFieldPlan> plan_; /* as of the last negotiation */
+};
+
+bool State::set_property(guint id, const GValue *value)
+{
+    const std::lock_guard lock(mutex);
+    if (!dff::set_light_field_property(settings_, id, value))
+        return false;
+    settings_changed_ = true;
+    return true;
+}
+
+bool State::get_property(guint id, GValue *value)
+{
+    const std::lock_guard lock(mutex);
+    if (id != PropertyFileSuffix)
+        return dff::get_light_field_property(settings_, id, value);
+    g_value_set_string(value, file_suffix_.c_str());
+    return true;
 }
 
 /* Hands changed properties to the work. */
-static void apply_settings(State &state)
+void State::apply_settings()
 {
-    const std::lock_guard lock(state.mutex);
-    if (state.settings_changed)
-        state.picture.set_settings(state.settings);
-    state.settings_changed = false;
+    const std::lock_guard lock(mutex);
+    if (settings_changed_)
+        picture_.set_settings(settings_);
+    settings_changed_ = false;
 }
 
-static GstFlowReturn compose_and_push(GstLightFieldCompose *self, GstBuffer *color, GstBuffer *depth)
+void State::open_device(std::shared_ptr<dff::Device> device)
 {
-    State &state = *self->state;
-    try {
-        const GstClockTime start = gst_util_get_timestamp();
-        apply_settings(state);
-        GstBuffer *picture = state.picture.compose(color, depth);
-        account(self, gst_util_get_timestamp() - start, depth != nullptr);
-        gst_aggregator_selected_samples(GST_AGGREGATOR(self), GST_BUFFER_PTS(picture),
-                                        GST_BUFFER_DTS(picture), GST_BUFFER_DURATION(picture), nullptr);
-        return gst_aggregator_finish_buffer(GST_AGGREGATOR(self), picture);
-    } catch (const dff::EngineError &error) {
-        dff::post_engine_error(GST_ELEMENT(self), error);
-    } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
-    }
-    return GST_FLOW_ERROR;
+    dff::LightFieldPlan(settings_, {1, 1}); /* tells of a calibration that cannot be read */
+    settings_changed_ = true;
+    picture_.start(std::move(device));
 }
 
-static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator, gboolean)
-{
-    GstLightFieldCompose *self = GST_LIGHT_FIELD_COMPOSE(aggregator);
-    g_autoptr(GstBuffer) color = gst_aggregator_pad_peek_buffer(self->color_pad);
-
-    if (!color)
-        return gst_aggregator_pad_is_eos(self->color_pad) ? GST_FLOW_EOS : GST_AGGREGATOR_FLOW_NEED_DATA;
-    if (!self->state->has_color_caps)
-        return GST_FLOW_NOT_NEGOTIATED;
-    if (gst_buffer_get_size(color) == 0) { /* a gap */
-        gst_aggregator_pad_drop_buffer(self->color_pad);
-        return GST_FLOW_OK;
-    }
-    const std::optional<GstBuffer *> match = dff::matching_depth(self->color_pad, color, self->depth_pad);
-    if (!match)
-        return GST_AGGREGATOR_FLOW_NEED_DATA;
-    g_autoptr(GstBuffer) depth = *match;
-    gst_aggregator_pad_drop_buffer(self->color_pad);
-    return compose_and_push(self, color, depth);
-}
-
-static gboolean set_color_caps(GstLightFieldCompose *self, const GstCaps *caps)
+bool State::set_main_caps(const GstCaps *caps)
 {
     GstVideoInfo info;
     if (!gst_video_info_from_caps(&info, caps))
-        return FALSE;
-    self->state->picture.set_color(info);
-    self->state->has_color_caps = true;
-    gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(self));
-    return TRUE;
+        return false;
+    picture_.set_color(info);
+    return true;
 }
 
-static gboolean set_depth_caps(GstLightFieldCompose *self, const GstCaps *caps)
+bool State::set_depth_caps(const GstCaps *caps)
 {
     GstVideoInfo info;
     GstDepthInfo facts;
     if (!gst_video_info_from_caps(&info, caps))
-        return FALSE;
+        return false;
     gst_depth_info_init(&facts);
     gst_depth_info_from_caps(&facts, caps);
-    self->state->picture.set_depth(info, facts);
-    return TRUE;
+    picture_.set_depth(info, facts);
+    return true;
+}
+
+GstBuffer *State::compose(GstBuffer *color, GstBuffer *depth)
+{
+    apply_settings();
+    return picture_.compose(color, depth);
+}
+
+void State::make_plan()
+{
+    apply_settings();
+    plan_ = picture_.plan();
+}
+
+/* The suffix that tells players how the quilt is laid out; empty in other layouts. */
+std::string suffix_of(const dff::LightFieldPlan &plan, const GstVideoInfo &color)
+{
+    if (plan.parameters.layout != dff::LightFieldLayout::Quilt)
+        return "";
+    const double aspect =
+        plan.parameters.view_aspect > 0.0
+            ? plan.parameters.view_aspect
+            : static_cast<double>(GST_VIDEO_INFO_WIDTH(&color)) / GST_VIDEO_INFO_HEIGHT(&color);
+    return dff::quilt_suffix(plan.parameters.columns, plan.parameters.rows, aspect);
+}
+
+void State::set_output(const GstVideoInfo &info)
+{
+    picture_.set_output(info);
+    const std::lock_guard lock(mutex);
+    file_suffix_ = suffix_of(*plan_, picture_.color());
+}
+
+} // namespace
+
+struct _GstLightFieldCompose {
+    GstAggregator parent;
+    State *state;
+};
+
+G_DEFINE_FINAL_TYPE(GstLightFieldCompose, gst_light_field_compose, GST_TYPE_AGGREGATOR)
+GST_ELEMENT_REGISTER_DEFINE(lightfieldcompose, "lightfieldcompose", GST_RANK_NONE,
+                            GST_TYPE_LIGHT_FIELD_COMPOSE)
+
+static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator, gboolean)
+{
+    return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->aggregate();
 }
 
 /* What the plan makes of the colour's caps. */
@@ -204,12 +224,11 @@ static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggr
                                                              GstCaps **caps)
 {
     State &state = *GST_LIGHT_FIELD_COMPOSE(aggregator)->state;
-    if (!state.has_color_caps)
+    if (!state.has_main_caps())
         return GST_AGGREGATOR_FLOW_NEED_DATA;
     try {
-        apply_settings(state);
-        state.plan = state.picture.plan();
-        g_autoptr(GstCaps) possible = output_caps(state.picture.color(), *state.plan);
+        state.make_plan();
+        g_autoptr(GstCaps) possible = output_caps(state.color(), state.plan());
         *caps = downstream ? gst_caps_intersect(possible, downstream) : gst_caps_ref(possible);
         return GST_FLOW_OK;
     } catch (const std::exception &error) {
@@ -220,24 +239,12 @@ static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggr
 
 static GstCaps *gst_light_field_compose_fixate_src_caps(GstAggregator *aggregator, GstCaps *caps)
 {
-    const dff::LightFieldPlan &plan = *GST_LIGHT_FIELD_COMPOSE(aggregator)->state->plan;
+    const dff::LightFieldPlan &plan = GST_LIGHT_FIELD_COMPOSE(aggregator)->state->plan();
     caps = gst_caps_make_writable(gst_caps_truncate(caps));
     GstStructure *structure = gst_caps_get_structure(caps, 0);
     gst_structure_fixate_field_nearest_int(structure, "width", static_cast<gint>(plan.output.width));
     gst_structure_fixate_field_nearest_int(structure, "height", static_cast<gint>(plan.output.height));
     return gst_caps_fixate(caps);
-}
-
-/* The suffix that tells players how the quilt is laid out; empty in other layouts. */
-static std::string suffix_of(const dff::LightFieldPlan &plan, const GstVideoInfo &color)
-{
-    if (plan.parameters.layout != dff::LightFieldLayout::Quilt)
-        return "";
-    const double aspect =
-        plan.parameters.view_aspect > 0.0
-            ? plan.parameters.view_aspect
-            : static_cast<double>(GST_VIDEO_INFO_WIDTH(&color)) / GST_VIDEO_INFO_HEIGHT(&color);
-    return dff::quilt_suffix(plan.parameters.columns, plan.parameters.rows, aspect);
 }
 
 static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggregator, GstCaps *caps)
@@ -246,8 +253,7 @@ static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggre
     GstVideoInfo info;
     if (!gst_video_info_from_caps(&info, caps))
         return FALSE;
-    const dff::LightFieldPlan &plan = *state.plan;
-    const dff::LightFieldParameters &wanted = plan.parameters;
+    const dff::LightFieldParameters &wanted = state.plan().parameters;
     const bool is_quilt = wanted.layout == dff::LightFieldLayout::Quilt;
     const guint columns = is_quilt || wanted.layout == dff::LightFieldLayout::Views ? wanted.columns : 1;
     const guint rows = is_quilt ? wanted.rows : 1;
@@ -259,77 +265,26 @@ static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggre
                           (nullptr));
         return FALSE;
     }
-    state.picture.set_output(info);
-    const std::lock_guard lock(state.mutex);
-    state.file_suffix = suffix_of(plan, state.picture.color());
+    state.set_output(info);
     return TRUE;
 }
 
 static gboolean gst_light_field_compose_sink_event(GstAggregator *aggregator, GstAggregatorPad *pad,
                                                    GstEvent *event)
 {
-    GstLightFieldCompose *self = GST_LIGHT_FIELD_COMPOSE(aggregator);
-
-    if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
-        GstCaps *caps = nullptr;
-        gst_event_parse_caps(event, &caps);
-        const gboolean accepted =
-            pad == self->color_pad ? set_color_caps(self, caps) : set_depth_caps(self, caps);
-        gst_event_unref(event);
-        return accepted;
-    }
-    if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT && pad == self->color_pad) {
-        const GstSegment *segment = nullptr;
-        gst_event_parse_segment(event, &segment);
-        if (segment->format == GST_FORMAT_TIME)
-            gst_aggregator_update_segment(aggregator, segment);
-    }
+    if (const auto taken = GST_LIGHT_FIELD_COMPOSE(aggregator)->state->sink_event(pad, event))
+        return *taken;
     return GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->sink_event(aggregator, pad, event);
-}
-
-static gboolean gst_light_field_compose_propose_allocation(GstAggregator *, GstAggregatorPad *, GstQuery *,
-                                                           GstQuery *query)
-{
-    gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
-    return TRUE;
 }
 
 static gboolean gst_light_field_compose_start(GstAggregator *aggregator)
 {
-    GstLightFieldCompose *self = GST_LIGHT_FIELD_COMPOSE(aggregator);
-    State &state = *self->state;
-    for (GstAggregatorPad *pad : {self->color_pad, self->depth_pad})
-        if (!gst_pad_is_linked(GST_PAD(pad))) {
-            GST_ELEMENT_ERROR(
-                self, CORE, PAD,
-                ("The pad \"%s\" is not linked: lightfieldcompose needs a colour picture and its depth",
-                 GST_PAD_NAME(pad)),
-                (nullptr));
-            return FALSE;
-        }
-    try {
-        const std::lock_guard lock(state.mutex);
-        dff::LightFieldPlan(state.settings, {1, 1}); /* tells of a calibration that cannot be read */
-        state.settings_changed = true;
-        state.picture.start(dff::Device::open(state.device_wish));
-    } catch (const dff::EngineError &error) {
-        dff::post_engine_error(GST_ELEMENT(self), error);
-        return FALSE;
-    } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
-        return FALSE;
-    }
-    return TRUE;
+    return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->start();
 }
 
 static gboolean gst_light_field_compose_stop(GstAggregator *aggregator)
 {
-    State &state = *GST_LIGHT_FIELD_COMPOSE(aggregator)->state;
-    state.picture.stop();
-    state.has_color_caps = false;
-    const std::lock_guard lock(state.mutex);
-    state.pictures = state.without_depth = 0;
-    state.latency = 0;
+    GST_LIGHT_FIELD_COMPOSE(aggregator)->state->stop();
     return TRUE;
 }
 
@@ -337,34 +292,22 @@ static void gst_light_field_compose_set_property(GObject *object, guint id, cons
                                                  GParamSpec *pspec)
 {
     State &state = *GST_LIGHT_FIELD_COMPOSE(object)->state;
-    {
-        const std::lock_guard lock(state.mutex);
-        if (dff::set_light_field_property(state.settings, id, value))
-            state.settings_changed = true;
-        else if (id == PropertyDevice)
-            state.device_wish = g_value_get_string(value) ? g_value_get_string(value) : "";
-        else
-            G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
-    }
-    gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(object)); /* the size may be another now */
+    if (id == PropertyDevice)
+        state.set_device(value);
+    else if (state.set_property(id, value))
+        gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(object)); /* the size may be another now */
+    else
+        G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
 static void gst_light_field_compose_get_property(GObject *object, guint id, GValue *value, GParamSpec *pspec)
 {
     State &state = *GST_LIGHT_FIELD_COMPOSE(object)->state;
-    const std::lock_guard lock(state.mutex);
-    if (dff::get_light_field_property(state.settings, id, value))
-        return;
     if (id == PropertyDevice)
-        g_value_set_string(value, state.device_wish.c_str());
-    else if (id == PropertyFileSuffix)
-        g_value_set_string(value, state.file_suffix.c_str());
+        state.get_device(value);
     else if (id == PropertyStats)
-        g_value_take_boxed(value, gst_structure_new("lightfieldcompose-stats", "pictures", G_TYPE_UINT64,
-                                                    state.pictures, "without-depth", G_TYPE_UINT64,
-                                                    state.without_depth, "compute-ms", G_TYPE_DOUBLE,
-                                                    static_cast<gdouble>(state.compute_time) / 1e6, nullptr));
-    else
+        state.get_stats(value);
+    else if (!state.get_property(id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
@@ -374,45 +317,9 @@ static void gst_light_field_compose_finalize(GObject *object)
     G_OBJECT_CLASS(gst_light_field_compose_parent_class)->finalize(object);
 }
 
-/* Always pads, built here so that they keep their names. */
-static GstAggregatorPad *add_sink(GstLightFieldCompose *self, GstStaticPadTemplate *static_template)
-{
-    g_autoptr(GstPadTemplate) pad_template = gst_static_pad_template_get(static_template);
-    GstPad *pad = GST_PAD(g_object_new(GST_TYPE_AGGREGATOR_PAD, "name", static_template->name_template,
-                                       "direction", GST_PAD_SINK, "template", pad_template, nullptr));
-    gst_element_add_pad(GST_ELEMENT(self), pad);
-    return GST_AGGREGATOR_PAD(pad);
-}
-
 static void gst_light_field_compose_init(GstLightFieldCompose *self)
 {
-    self->state = new State;
-    self->color_pad = add_sink(self, &color_template);
-    self->depth_pad = add_sink(self, &depth_template);
-}
-
-static void install_own_properties(GObjectClass *object_class)
-{
-    g_object_class_install_property(
-        object_class, PropertyDevice,
-        g_param_spec_string(
-            "device", "Device",
-            "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; empty: the first "
-            "GPU, else the CPU",
-            "",
-            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)));
-    g_object_class_install_property(
-        object_class, PropertyFileSuffix,
-        g_param_spec_string(
-            "file-suffix", "File suffix",
-            "What players of quilts want before the dot of a file's name, such as _qs8x6a0.75; empty in "
-            "other layouts and before the first picture",
-            "", static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
-    g_object_class_install_property(
-        object_class, PropertyStats,
-        g_param_spec_boxed(
-            "stats", "Stats", "Pictures so far, those without any depth, and milliseconds the last one took",
-            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+    self->state = new State(GST_AGGREGATOR(self));
 }
 
 static void gst_light_field_compose_class_init(GstLightFieldComposeClass *klass)
@@ -431,11 +338,18 @@ static void gst_light_field_compose_class_init(GstLightFieldComposeClass *klass)
     aggregator_class->fixate_src_caps = gst_light_field_compose_fixate_src_caps;
     aggregator_class->negotiated_src_caps = gst_light_field_compose_negotiated_src_caps;
     aggregator_class->sink_event = gst_light_field_compose_sink_event;
-    aggregator_class->propose_allocation = gst_light_field_compose_propose_allocation;
+    aggregator_class->propose_allocation = dff::DepthComposer::propose_allocation;
     aggregator_class->start = gst_light_field_compose_start;
     aggregator_class->stop = gst_light_field_compose_stop;
     dff::install_light_field_properties(object_class);
-    install_own_properties(object_class);
+    dff::DepthComposer::install_properties(object_class, PropertyDevice, PropertyStats);
+    g_object_class_install_property(
+        object_class, PropertyFileSuffix,
+        g_param_spec_string(
+            "file-suffix", "File suffix",
+            "What players of quilts want before the dot of a file's name, such as _qs8x6a0.75; empty in "
+            "other layouts and before the first picture",
+            "", static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
     for (GstStaticPadTemplate *pad_template : {&color_template, &depth_template, &src_template})
         gst_element_class_add_static_pad_template_with_gtype(element_class, pad_template,
