@@ -22,6 +22,8 @@
 #include "caps_fields.h"
 #include "depth_palette.h"
 #include "depth_range.h"
+#include "depth_range_properties.h"
+#include "each_pixel.h"
 #include "stream_depth.h"
 
 #include <algorithm>
@@ -56,14 +58,11 @@ static GType gst_depth_palette_get_type()
 
 namespace {
 
-enum Property : guint { PropertyPalette = 1, PropertyNear, PropertyFar };
-
-constexpr double of_the_stream = -1.0;
+enum Property : guint { PropertyPalette = 1, PropertyNear };
 
 struct Settings {
     dff::DepthPalette palette = dff::DepthPalette::Turbo;
-    double near = of_the_stream;
-    double far = of_the_stream;
+    dff::DepthRangeProperties range;
 };
 
 /* The colour of every pixel there can be. */
@@ -93,7 +92,7 @@ struct State {
 
 std::optional<double> first_known(double wish, double stream)
 {
-    if (wish != of_the_stream)
+    if (wish != dff::DepthRangeProperties::not_set)
         return wish;
     return std::isnan(stream) ? std::nullopt : std::optional(stream);
 }
@@ -123,24 +122,10 @@ static void prepare_table(GstDepthColorize *self, GstBuffer *frame)
     State &state = *self->state;
     const Settings settings = settings_of(self);
     const GstDepthInfo depth = dff::depth_of(frame, state.caps);
-    const dff::DepthRange range(dff::scale_of(depth), first_known(settings.near, depth.near),
-                                first_known(settings.far, depth.far));
+    const dff::DepthRange range(dff::scale_of(depth), first_known(settings.range.near, depth.near),
+                                first_known(settings.range.far, depth.far));
     if (!state.table || state.table->palette != settings.palette || state.table->range != range)
         state.table.emplace(settings.palette, range);
-}
-
-static void paint(const ColourTable &table, const GstVideoFrame *depth, GstVideoFrame *picture)
-{
-    for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(depth); y++) {
-        const auto *in = static_cast<const guint8 *>(GST_VIDEO_FRAME_PLANE_DATA(depth, 0)) +
-                         static_cast<gssize>(y) * GST_VIDEO_FRAME_PLANE_STRIDE(depth, 0);
-        auto *out = static_cast<guint8 *>(GST_VIDEO_FRAME_PLANE_DATA(picture, 0)) +
-                    static_cast<gssize>(y) * GST_VIDEO_FRAME_PLANE_STRIDE(picture, 0);
-        for (int x = 0; x < GST_VIDEO_FRAME_WIDTH(depth); x++, in += 2, out += 3) {
-            const dff::Colour &colour = table.colours[GST_READ_UINT16_LE(in)];
-            std::copy(colour.begin(), colour.end(), out);
-        }
-    }
 }
 
 static GstFlowReturn transform_frame(GstVideoFilter *filter, GstVideoFrame *depth, GstVideoFrame *picture)
@@ -152,7 +137,11 @@ static GstFlowReturn transform_frame(GstVideoFilter *filter, GstVideoFrame *dept
         GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
     }
-    paint(*self->state->table, depth, picture);
+    const ColourTable &table = *self->state->table;
+    dff::each_pixel(depth, picture, [&](const guint8 *pixel, guint8 *out) {
+        const dff::Colour &colour = table.colours[GST_READ_UINT16_LE(pixel)];
+        std::copy(colour.begin(), colour.end(), out);
+    });
     return GST_FLOW_OK;
 }
 
@@ -191,11 +180,7 @@ static void set_property(GObject *object, guint id, const GValue *value, GParamS
     GST_OBJECT_LOCK(object);
     if (id == PropertyPalette)
         settings.palette = static_cast<dff::DepthPalette>(g_value_get_enum(value));
-    else if (id == PropertyNear)
-        settings.near = g_value_get_double(value);
-    else if (id == PropertyFar)
-        settings.far = g_value_get_double(value);
-    else
+    else if (!dff::set_depth_range(settings.range, pspec, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
     GST_OBJECT_UNLOCK(object);
 }
@@ -205,11 +190,7 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *p
     const Settings settings = settings_of(GST_DEPTH_COLORIZE(object));
     if (id == PropertyPalette)
         g_value_set_enum(value, static_cast<int>(settings.palette));
-    else if (id == PropertyNear)
-        g_value_set_double(value, settings.near);
-    else if (id == PropertyFar)
-        g_value_set_double(value, settings.far);
-    else
+    else if (!dff::get_depth_range(settings.range, pspec, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
@@ -224,31 +205,6 @@ static void gst_depth_colorize_init(GstDepthColorize *self)
     self->state = new State;
 }
 
-static void install_properties(GObjectClass *object_class)
-{
-    const Settings defaults;
-    const auto flags =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
-    g_object_class_install_property(object_class, PropertyPalette,
-                                    g_param_spec_enum("palette", "Palette", "Colours from near to far",
-                                                      GST_TYPE_DEPTH_PALETTE,
-                                                      static_cast<int>(defaults.palette), flags));
-    g_object_class_install_property(
-        object_class, PropertyNear,
-        g_param_spec_double(
-            "near", "Near",
-            "Object vergence in dioptres (1 / metres) of the first colour; -1 = that of the stream. "
-            "Of no effect in the units index and micrometre",
-            of_the_stream, 1000.0, defaults.near, flags));
-    g_object_class_install_property(
-        object_class, PropertyFar,
-        g_param_spec_double(
-            "far", "Far",
-            "Object vergence in dioptres (1 / metres) of the last colour, less than near; 0 is "
-            "infinity; -1 = that of the stream. Of no effect in the units index and micrometre",
-            of_the_stream, 1000.0, defaults.far, flags));
-}
-
 static void gst_depth_colorize_class_init(GstDepthColorizeClass *klass)
 {
     auto *object_class = G_OBJECT_CLASS(klass);
@@ -259,7 +215,15 @@ static void gst_depth_colorize_class_init(GstDepthColorizeClass *klass)
     object_class->set_property = set_property;
     object_class->get_property = get_property;
     object_class->finalize = finalize;
-    install_properties(object_class);
+    g_object_class_install_property(
+        object_class, PropertyPalette,
+        g_param_spec_enum("palette", "Palette", "Colours from near to far", GST_TYPE_DEPTH_PALETTE,
+                          static_cast<int>(Settings().palette),
+                          static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
+                                                   GST_PARAM_MUTABLE_PLAYING)));
+    dff::install_depth_range(object_class, PropertyNear,
+                             "-1 = that of the stream. Of no effect in the units index and micrometre",
+                             GST_PARAM_MUTABLE_PLAYING);
 
     transform_class->transform_caps = transform_caps;
     transform_class->transform_meta = transform_meta;

@@ -23,6 +23,8 @@
 #include "caps_fields.h"
 #include "depth_palette.h"
 #include "depth_range.h"
+#include "depth_range_properties.h"
+#include "each_pixel.h"
 #include "stream_depth.h"
 
 #include <cmath>
@@ -40,14 +42,11 @@ static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
 
 namespace {
 
-enum Property : guint { PropertyUnit = 1, PropertyNear, PropertyFar };
-
-constexpr double unknown = -1.0;
+enum Property : guint { PropertyUnit = 1, PropertyNear };
 
 struct Settings {
     GstDepthUnit unit = GST_DEPTH_UNIT_AUTO;
-    double near = unknown;
-    double far = unknown;
+    dff::DepthRangeProperties range;
 };
 
 /* What the pixels of the restored depth mean. */
@@ -55,10 +54,12 @@ GstDepthInfo depth_of(const Settings &settings)
 {
     GstDepthInfo depth;
     gst_depth_info_init(&depth);
-    const bool known = settings.near != unknown && settings.far != unknown;
+    const auto [near, far] = settings.range;
+    const bool known =
+        near != dff::DepthRangeProperties::not_set && far != dff::DepthRangeProperties::not_set;
     if (known) {
-        depth.near = settings.near;
-        depth.far = settings.far;
+        depth.near = near;
+        depth.far = far;
     }
     depth.unit = settings.unit;
     if (settings.unit == GST_DEPTH_UNIT_AUTO)
@@ -135,24 +136,13 @@ static GstCaps *transform_caps(GstBaseTransform *transform, GstPadDirection from
                   : gst_caps_ref(depth_caps);
 }
 
-static void measure(const dff::DepthRange &range, const GstVideoFrame *picture, GstVideoFrame *depth)
-{
-    for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(depth); y++) {
-        const auto *in = static_cast<const guint8 *>(GST_VIDEO_FRAME_PLANE_DATA(picture, 0)) +
-                         static_cast<gssize>(y) * GST_VIDEO_FRAME_PLANE_STRIDE(picture, 0);
-        auto *out = static_cast<guint8 *>(GST_VIDEO_FRAME_PLANE_DATA(depth, 0)) +
-                    static_cast<gssize>(y) * GST_VIDEO_FRAME_PLANE_STRIDE(depth, 0);
-        for (int x = 0; x < GST_VIDEO_FRAME_WIDTH(depth); x++, in += 3, out += 2) {
-            const std::optional<double> position = dff::hue_position({in[0], in[1], in[2]});
-            GST_WRITE_UINT16_LE(out, position ? range.pixel(*position) : dff::DepthScale::no_value);
-        }
-    }
-}
-
 static GstFlowReturn transform_frame(GstVideoFilter *filter, GstVideoFrame *picture, GstVideoFrame *depth)
 {
     State &state = *GST_DEPTH_UNCOLORIZE(filter)->state;
-    measure(*state.range, picture, depth);
+    dff::each_pixel(picture, depth, [&](const guint8 *colour, guint8 *out) {
+        const std::optional<double> position = dff::hue_position({colour[0], colour[1], colour[2]});
+        GST_WRITE_UINT16_LE(out, position ? state.range->pixel(*position) : dff::DepthScale::no_value);
+    });
     gst_buffer_add_depth_meta(depth->buffer, &state.depth);
     state.depth.sequence++;
     state.depth.sweep++;
@@ -165,11 +155,7 @@ static void set_property(GObject *object, guint id, const GValue *value, GParamS
     GST_OBJECT_LOCK(object);
     if (id == PropertyUnit)
         settings.unit = static_cast<GstDepthUnit>(g_value_get_enum(value));
-    else if (id == PropertyNear)
-        settings.near = g_value_get_double(value);
-    else if (id == PropertyFar)
-        settings.far = g_value_get_double(value);
-    else
+    else if (!dff::set_depth_range(settings.range, pspec, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
     GST_OBJECT_UNLOCK(object);
 }
@@ -179,11 +165,7 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *p
     const Settings settings = settings_of(GST_DEPTH_UNCOLORIZE(object));
     if (id == PropertyUnit)
         g_value_set_enum(value, settings.unit);
-    else if (id == PropertyNear)
-        g_value_set_double(value, settings.near);
-    else if (id == PropertyFar)
-        g_value_set_double(value, settings.far);
-    else
+    else if (!dff::get_depth_range(settings.range, pspec, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
 
@@ -198,32 +180,6 @@ static void gst_depth_uncolorize_init(GstDepthUncolorize *self)
     self->state = new State;
 }
 
-static void install_properties(GObjectClass *object_class)
-{
-    const Settings defaults;
-    const auto flags =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
-    g_object_class_install_property(
-        object_class, PropertyUnit,
-        g_param_spec_enum(
-            "unit", "Unit",
-            "Unit of the depth: what it was before the colours; auto is dioptre where near and far are "
-            "set, else index. millimetre needs near and far, micrometre is refused",
-            GST_TYPE_DEPTH_UNIT, defaults.unit, flags));
-    g_object_class_install_property(
-        object_class, PropertyNear,
-        g_param_spec_double("near", "Near",
-                            "Object vergence in dioptres (1 / metres) of the first colour; -1 = unknown",
-                            unknown, 1000.0, defaults.near, flags));
-    g_object_class_install_property(
-        object_class, PropertyFar,
-        g_param_spec_double(
-            "far", "Far",
-            "Object vergence in dioptres (1 / metres) of the last colour, less than near; 0 is "
-            "infinity; -1 = unknown",
-            unknown, 1000.0, defaults.far, flags));
-}
-
 static void gst_depth_uncolorize_class_init(GstDepthUncolorizeClass *klass)
 {
     auto *object_class = G_OBJECT_CLASS(klass);
@@ -233,7 +189,15 @@ static void gst_depth_uncolorize_class_init(GstDepthUncolorizeClass *klass)
     object_class->set_property = set_property;
     object_class->get_property = get_property;
     object_class->finalize = finalize;
-    install_properties(object_class);
+    g_object_class_install_property(
+        object_class, PropertyUnit,
+        g_param_spec_enum(
+            "unit", "Unit",
+            "Unit of the depth: what it was before the colours; auto is dioptre where near and far are "
+            "set, else index. millimetre needs near and far, micrometre is refused",
+            GST_TYPE_DEPTH_UNIT, Settings().unit,
+            static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)));
+    dff::install_depth_range(object_class, PropertyNear, "-1 = unknown", GST_PARAM_MUTABLE_READY);
 
     transform_class->start = start;
     transform_class->transform_caps = transform_caps;
