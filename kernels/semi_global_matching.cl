@@ -217,7 +217,7 @@ __kernel void follow_rows(__global const short *cost, __global const short *edge
     }
 }
 
-/* u: the least of the three totals together, with a parabola through its neighbours; c = mean_z C.
+/* u: the least of the three totals together, with a parabola through its neighbours; c = mean_z C, its ends mirrored.
  * Work-items (1, low height). */
 __kernel void decide(__global const short *total_down, __global const short *total_up,
                      __global const short *total_along, __global const short *cost, __global float *u,
@@ -255,4 +255,5 @@ __kernel void decide(__global const short *total_down, __global const short *tot
         CELLS(u + row + x) = position;
         CELLS(confidence + row + x) = clamp(convert_float8(cost_sum) * (4.0f / COST_ONE / PLANES), 0.0f, 1.0f);
     }
+    mirror_ends(confidence + row, width);
 }

@@ -136,6 +136,7 @@ protected:
     void expect_guide_image();
     void expect_guided_filter_and_matching();
     void expect_fill_and_upsampling();
+    void expect_confidence_and_sparse_depth();
 
     StackShape shape;
     TestStack stack;
@@ -170,6 +171,7 @@ TEST_P(VolumeStages, decision_agrees_with_its_twins)
     expect_guide_image();
     expect_guided_filter_and_matching();
     expect_fill_and_upsampling();
+    expect_confidence_and_sparse_depth();
 }
 
 void VolumeStages::expect_noise_as_made()
@@ -271,6 +273,32 @@ void VolumeStages::expect_fill_and_upsampling()
     for (size_t i = 0; i < depth.size(); i++)
         other += std::abs(encoder.decode(depth[i]).value_or(-1.0) - expected.values[i]) > 0.02f;
     EXPECT_LE(other, depth.size() / 200);
+}
+
+void VolumeStages::expect_confidence_and_sparse_depth()
+{
+    const size_t pixels = size_t{shape.width} * shape.height;
+    upsampling.run_confidence(matching, cost_stage);
+    const auto confidence = read_back<uint8_t>(queue, upsampling.confidence(), pixels);
+    const auto expected =
+        twin::upsample_confidence(read(matching.confidence(), 1), shape.width, shape.height, low.scale);
+    for (size_t i = 0; i < pixels; i++)
+        ASSERT_NEAR(confidence[i], expected[i], 1) << i % shape.width << "," << i / shape.width;
+
+    const auto depth = read_back<uint16_t>(queue, upsampling.depth(), pixels);
+    const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
+    upsampling.run_sparse(fill_stage, nullptr);
+    EXPECT_EQ(read_back<uint16_t>(queue, upsampling.sparse(), pixels),
+              twin::keep_confident(depth, confidence, nullptr, high));
+
+    Luma luma(queue, shape);
+    ZEntropy motion(queue, shape, 0.5f);
+    luma.run(buffer);
+    motion.run(luma);
+    const auto moved = read_back<uint8_t>(queue, motion.moved(), pixels);
+    upsampling.run_sparse(fill_stage, &motion);
+    EXPECT_EQ(read_back<uint16_t>(queue, upsampling.sparse(), pixels),
+              twin::keep_confident(depth, confidence, &moved, high));
 }
 
 INSTANTIATE_TEST_SUITE_P(Volume, VolumeStages,

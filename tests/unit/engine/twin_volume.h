@@ -38,5 +38,10 @@ Volume decide(const Volume &total);
 Volume mean_over_planes(const Volume &cost);
 Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence);
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);
+std::vector<uint8_t> upsample_confidence(const Volume &confidence, unsigned width, unsigned height,
+                                         unsigned scale);
+std::vector<uint16_t> keep_confident(const std::vector<uint16_t> &depth,
+                                     const std::vector<uint8_t> &confidence,
+                                     const std::vector<uint8_t> *moved, float high_confidence);
 
 } // namespace dff::twin

@@ -298,4 +298,34 @@ Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, fl
     return result;
 }
 
+std::vector<uint8_t> upsample_confidence(const Volume &confidence, unsigned width, unsigned height,
+                                         unsigned scale)
+{
+    std::vector<uint8_t> upsampled;
+    for (unsigned y = 0; y < height; y++)
+        for (unsigned x = 0; x < width; x++) {
+            const double fx = (x + 0.5) / scale - 0.5, fy = (y + 0.5) / scale - 0.5;
+            const int left = static_cast<int>(std::floor(fx)), top = static_cast<int>(std::floor(fy));
+            double c = 0.0;
+            for (int j = 0; j < 2; j++)
+                for (int i = 0; i < 2; i++)
+                    c += (1.0 - std::abs(left + i - fx)) * (1.0 - std::abs(top + j - fy)) *
+                         confidence.at(reflect(left + i, confidence.width),
+                                       reflect(top + j, confidence.height));
+            upsampled.push_back(static_cast<uint8_t>(std::lround(255.0 * c)));
+        }
+    return upsampled;
+}
+
+std::vector<uint16_t> keep_confident(const std::vector<uint16_t> &depth,
+                                     const std::vector<uint8_t> &confidence,
+                                     const std::vector<uint8_t> *moved, float high_confidence)
+{
+    std::vector<uint16_t> kept = depth;
+    for (size_t i = 0; i < kept.size(); i++)
+        if (confidence[i] / 255.0f < 0.5f * high_confidence || (moved && (*moved)[i]))
+            kept[i] = 0;
+    return kept;
+}
+
 } // namespace dff::twin
