@@ -251,6 +251,7 @@ inline uchar32 linear_samples(const Source *source, int x, int y, ushort32 posit
         const short32 away = as_short32(position) - (short)(z * UNIT);
         const short32 weight = higher((short)UNIT - higher(away, -away), (short32)0);
         sum += as_ushort32(weight) * widen(*(__global const bytes32 *)samples_at(source, z, x, y));
+        PREFETCH(samples_at(source, z, x, y + 1));
     }
     return __builtin_convertvector(sum >> (ushort)8, uchar32);
 }

@@ -319,10 +319,28 @@ inline void take(float16 product, int z, int *best, float *sum)
     *(float16 *)sum += product;
 }
 
+/* Rows of the tile that is measured next, to be asked for ahead: of the same tile in the next plane, or of the next
+ * tile. Those shared with the tiles above and to the left have been read before. */
+typedef struct {
+    __global const uchar *row;
+    ulong stride;
+} Ahead;
+
+inline Ahead tile_ahead(__global const uchar *stack, __global const ulong2 *table, Tile tile, int z, int planes,
+                        int width)
+{
+    int2 first = (int2)(tile.x, tile.y);
+    if (z + 1 == planes)
+        first = tile.x + TILE_WIDTH < width ? (int2)(tile.x + TILE_WIDTH, tile.y) : (int2)(0, tile.y + TILE_HEIGHT);
+    const ulong2 rows = table[z + 1 == planes ? 0 : z + 1];
+    return (Ahead){stack + rows.x + rows.y * (ulong)(first.y + MARGIN_Y) + first.x + BLOCK, rows.y};
+}
+
 /* Takes plane z of a tile into the best product and the sum over the planes. */
-inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int z, int *best, float *sum)
+inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int z, Ahead ahead, int *best, float *sum)
 {
     for (int block = 0; block * BLOCK < tile.columns; block++) {
+        __global const uchar *next = ahead.row + block * BLOCK;
         Above even = {0, 0, {0, 0}}, odd = even;
         const uchar *row = luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK;
         next_gradients(row, &even, &odd);
@@ -333,6 +351,10 @@ inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int
         for (int y = 0; y < tile.whole_rows; y += ROUND) {
             __attribute__((opencl_unroll_hint))
             for (int phase = 0; phase < ROUND; phase++) {
+                PREFETCH(next);
+                if (y + phase < 2 * MARGIN_Y)
+                    PREFETCH(next - ahead.stride * (2 * MARGIN_Y));
+                next += ahead.stride;
                 const Columns fine = next_gradients(row, &even, &odd);
                 const float16 columns[4] = {even_lanes(fine.even), even_lanes(fine.odd), odd_lanes(fine.even),
                                             odd_lanes(fine.odd)};
@@ -406,7 +428,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
             downsample(luma, tile, sums, level);
             coarse_gradient(sums, tile, spread + (level - 2) * SPREAD_LEVEL, level);
         }
-        measure_plane(luma, tile, spread, z, best, sum);
+        measure_plane(luma, tile, spread, z, tile_ahead(stack, table, tile, z, planes, width), best, sum);
     }
 
     float unit = FINE_UNIT;

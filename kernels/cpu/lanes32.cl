@@ -46,5 +46,11 @@ inline ushort16 second_half(ushort32 v)
     return __builtin_shufflevector(v, v, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
 }
 
+/* Asks for the cache line of an address that will be read soon; OpenCL's own prefetch() does nothing on CPUs. (Pointers
+ * of two address spaces convert through integers only.) */
+#ifndef PREFETCH
+#define PREFETCH(address) __builtin_prefetch((const void *)(ulong)(address))
+#endif
+
 /* Runs over 32 samples or more as FOR_EACH_16 does over 16. */
 #define FOR_EACH_32(x, width) for (int x = 0; x < (width); x = x + 32 < (width) ? min(x + 32, (width) - 32) : (width))
