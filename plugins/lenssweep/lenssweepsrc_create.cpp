@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lenssweepsrc_private.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -77,14 +78,31 @@ static bool take_changes(GstLensSweepSrc *self)
     return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
 }
 
+/* What the pipeline's clock is ahead of CLOCK_MONOTONIC. Both are read again if this thread had to wait
+ * between. */
+static gint64 ahead_ns(GstClock *clock)
+{
+    gint64 ahead = 0;
+    gint64 least_ns = G_MAXINT64;
+    for (int i = 0; i < 10 && least_ns > 100'000; i++) {
+        const gint64 before_ns = dff::host_now_ns();
+        const auto clock_ns = static_cast<gint64>(gst_clock_get_time(clock));
+        const gint64 between_ns = dff::host_now_ns() - before_ns;
+        if (between_ns < least_ns) {
+            least_ns = between_ns;
+            ahead = clock_ns - before_ns - between_ns / 2;
+        }
+    }
+    return ahead;
+}
+
 /* The running time of a moment of CLOCK_MONOTONIC; none before the pipeline's base time. */
 static GstClockTime running_time_of(GstLensSweepSrc *self, gint64 host_ns)
 {
     g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(self));
     if (!clock)
         return GST_CLOCK_TIME_NONE;
-    const auto now = static_cast<gint64>(gst_clock_get_time(clock));
-    const gint64 moment = now - (dff::host_now_ns() - host_ns);
+    const gint64 moment = host_ns + ahead_ns(clock);
     const auto base = static_cast<gint64>(gst_element_get_base_time(GST_ELEMENT(self)));
     return moment < base ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(moment - base);
 }
@@ -112,9 +130,12 @@ static GstBuffer *make_buffer(GstLensSweepSrc *self, dff::CapturedPlane plane)
 {
     GstLensSweepSrcState &state = *self->state;
     const dff::SweepCapture &capture = *state.capture;
-    const GstClockTime pts = running_time_of(self, plane.exposed_ns);
-    if (plane.frame.arrival_ns < state.playing_since_ns || !GST_CLOCK_TIME_IS_VALID(pts))
+    const GstClockTime arrived = running_time_of(self, plane.frame.arrival_ns);
+    if (plane.frame.arrival_ns < state.playing_since_ns || !GST_CLOCK_TIME_IS_VALID(arrived))
         return nullptr; /* of a time when the pipeline did not play */
+    /* A camera that triggers itself may have begun before. */
+    const auto since_exposure =
+        static_cast<GstClockTime>(std::max<gint64>(plane.frame.arrival_ns - plane.exposed_ns, 0));
     const PlaneOutput output{
         state.format,
         capture.plan().planes(),
@@ -126,7 +147,7 @@ static GstBuffer *make_buffer(GstLensSweepSrc *self, dff::CapturedPlane plane)
     };
     GstBuffer *buffer = plane_buffer(std::move(plane), output);
     if (buffer)
-        GST_BUFFER_PTS(buffer) = pts;
+        GST_BUFFER_PTS(buffer) = arrived - std::min(arrived, since_exposure);
     return buffer;
 }
 

@@ -80,6 +80,17 @@ TEST(LensSweepSrc, planes_follow_each_other)
     EXPECT_EQ(statistic(pipeline, "delivered"), 12U);
 }
 
+TEST(LensSweepSrc, a_frame_whose_exposure_began_before_the_stream_is_not_left_out)
+{
+    Pipeline pipeline(
+        "lenssweepsrc camera=Fake_1 trigger=free-run planes=4 rate=15 exposure=5000000 num-buffers=1 " + out);
+    pipeline.set_state(GST_STATE_PLAYING);
+    const Sample sample = pipeline.pull("out");
+    ASSERT_NE(sample, nullptr) << pipeline.wait();
+    EXPECT_EQ(focus_of(sample)->plane, 0U);
+    EXPECT_EQ(GST_BUFFER_PTS(gst_sample_get_buffer(sample.get())), 0U);
+}
+
 TEST(LensSweepSrc, the_cameras_own_time_is_told)
 {
     Pipeline pipeline(camera + "num-buffers=1 " + out);
