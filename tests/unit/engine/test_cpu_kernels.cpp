@@ -189,6 +189,45 @@ INSTANTIATE_TEST_SUITE_P(CpuKernels, LumaGridParameters,
                                          BilateralGrid::Parameters{16, 16, 0, 2.0f, 500},
                                          BilateralGrid::Parameters{37, 5, 0, 0.1f, 300}));
 
+TEST(CpuKernels, the_first_start_agrees_with_its_twin)
+{
+    const BilateralGrid::Parameters no_iterations{16, 16, 0, 0.1f, 0};
+    const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
+    const TestStack stack = smooth_stack(shape);
+    Stages stages(stack);
+    stages.focus.run(stages.luma, nullptr, false);
+    LumaGrid grid(stages.queue, 150, 101, no_iterations);
+    DepthSlice slice(stages.queue, shape, grid);
+    const DepthCoder coder(stages.queue, shape);
+    const size_t pixels = 150 * 101;
+    const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
+    grid.run(stages.focus.planes(), stages.statistics.mean());
+    slice.run(grid, stages.statistics.mean(), coder, depth);
+
+    const Volume expected = twin::gaussian_blur(
+        twin::spread_start(read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels),
+                           read_back<uint8_t>(stages.queue, stages.statistics.mean(), pixels), 150, 101,
+                           no_iterations),
+        GaussianBlur::taps_for(no_iterations.sigma_xy));
+    const auto found = read_back<uint16_t>(stages.queue, depth, pixels);
+    for (size_t i = 0; i < pixels; i++)
+        ASSERT_NEAR((found[i] - 1) / 65534.0f * 5.0f, expected.values[i], 0.05f) << i;
+}
+
+TEST(CpuKernels, a_grid_goes_on_from_the_last_solution_where_that_is_better)
+{
+    const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
+    Stages stages(smooth_stack(shape));
+    stages.focus.run(stages.luma, nullptr, false);
+    LumaGrid grid(stages.queue, 150, 101, {16, 16, 0, 0.1f, 6});
+    const auto residual_of_run = [&] {
+        grid.run(stages.focus.planes(), stages.statistics.mean());
+        return read_back<float>(stages.queue, grid.residual_norm(), 1)[0];
+    };
+    const float first = residual_of_run();
+    EXPECT_LT(residual_of_run(), 0.5f * first);
+}
+
 TEST(CpuKernels, a_grid_works_again_after_nothing_was_known)
 {
     const StackShape shape{PixelFormat::Gray8, 96, 80, 4};

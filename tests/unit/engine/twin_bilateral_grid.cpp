@@ -138,4 +138,53 @@ Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uin
     return u;
 }
 
+/* What of a cell arrives at another when each of `cells` passes 0.6 of its own on to the right, then to the
+ * left. */
+static double spread(int from, int to, int cells)
+{
+    double sum = 0.0;
+    for (int turn = std::max(from, to); turn < cells; turn++)
+        sum += std::pow(0.6, turn - from) * std::pow(0.6, turn - to);
+    return sum;
+}
+
+Volume spread_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &luma, unsigned width,
+                    unsigned height, const BilateralGrid::Parameters &p)
+{
+    std::map<std::array<int, 3>, std::pair<double, double>> cells; /* sum of planes, known pixels */
+    const auto cell_of = [&](size_t pixel) {
+        return std::array{static_cast<int>(pixel % width / p.sigma_xy),
+                          static_cast<int>(pixel / width / p.sigma_xy),
+                          static_cast<int>(luma[pixel] / p.sigma_luma)};
+    };
+    for (size_t pixel = 0; pixel < sparse.size(); pixel++)
+        if (sparse[pixel] != 255) {
+            cells[cell_of(pixel)].first += sparse[pixel];
+            cells[cell_of(pixel)].second += 1.0;
+        }
+
+    const int columns = static_cast<int>((width - 1) / p.sigma_xy) + 1;
+    const int rows = static_cast<int>((height - 1) / p.sigma_xy) + 1;
+    Volume start(width, height, 1);
+    std::map<std::array<int, 3>, double> means;
+    for (size_t pixel = 0; pixel < sparse.size(); pixel++) {
+        const auto here = cell_of(pixel);
+        if (!means.contains(here)) {
+            double target = 0.0, weight = 0.0;
+            for (const auto &[there, known] : cells) {
+                const int steps = std::abs(here[2] - there[2]);
+                if (steps > 1)
+                    continue;
+                const double nearness = std::pow(0.4, steps) * spread(here[0], there[0], columns) *
+                                        spread(here[1], there[1], rows);
+                target += nearness * known.first;
+                weight += nearness * known.second;
+            }
+            means[here] = target / weight;
+        }
+        start.values[pixel] = static_cast<float>(means[here]);
+    }
+    return start;
+}
+
 } // namespace dff::twin

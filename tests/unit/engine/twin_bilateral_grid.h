@@ -13,4 +13,8 @@ Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uin
                        const std::vector<uint8_t> &reference_u, const std::vector<uint8_t> &reference_v,
                        unsigned width, unsigned height, const BilateralGrid::Parameters &parameters);
 
+/* Where LumaGrid starts from: the mean plane of the known pixels around each cell. */
+Volume spread_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &luma, unsigned width,
+                    unsigned height, const BilateralGrid::Parameters &parameters);
+
 } // namespace dff::twin
