@@ -7,9 +7,11 @@
 typedef uchar uchar32 __attribute__((ext_vector_type(32)));
 typedef short short32 __attribute__((ext_vector_type(32)));
 typedef ushort ushort32 __attribute__((ext_vector_type(32)));
+typedef uchar uchar64 __attribute__((ext_vector_type(64)));
 
 /* That may lie anywhere in memory. */
 typedef uchar32 __attribute__((aligned(1))) bytes32;
+typedef uchar64 __attribute__((aligned(1))) bytes64;
 typedef short32 __attribute__((aligned(2))) slanes32;
 typedef ushort32 __attribute__((aligned(2))) lanes32;
 
@@ -44,6 +46,28 @@ inline ushort16 first_half(ushort32 v)
 inline ushort16 second_half(ushort32 v)
 {
     return __builtin_shufflevector(v, v, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
+}
+
+typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */
+
+inline ushort32 even_bytes(ushort32 pairs)
+{
+    return pairs & (ushort)255;
+}
+
+inline ushort32 odd_bytes(ushort32 pairs)
+{
+    return pairs >> (ushort)8;
+}
+
+inline float16 even_lanes(ushort32 v)
+{
+    return convert_float16(as_int16(v) & 65535);
+}
+
+inline float16 odd_lanes(ushort32 v)
+{
+    return convert_float16(as_int16(as_uint16(v) >> 16));
 }
 
 /* Asks for the cache line of an address that will be read soon; OpenCL's own prefetch() does nothing on CPUs. (Pointers

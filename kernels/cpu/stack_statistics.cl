@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * For CPUs, in one pass over the luma of all planes: the reference of reference_image.cl (the mean, rounded down) and
+ * For focus_tiles.cl, in one pass over a tile's luma in all planes, which the core's cache still holds: the reference of reference_image.cl (the mean, rounded down) and
  * the moved pixels of z_entropy.cl. H is at most log2 of the bins between the darkest and the brightest plane, so that
  * the histogram is needed where these lie far apart only.
  */
-#include "lanes32.cl"
-
 #define BIN_SHIFT 4 /* 16 DN */
 #define BINS 16
 #define MOST_PLANES 64
@@ -62,38 +60,64 @@ inline uchar16 entropy_exceeds(__global const uchar *stack, __global const ulong
     return as_uchar16(convert_char16(entropy(bins, planes, lowest(first), highest(last)) > threshold_bits + ROUNDING));
 }
 
-inline uchar16 mean_of(ushort16 sum, int planes)
+/* Which of 64 pixels moved, where some of them span `most_bins` bins or more. */
+inline void mark_moved(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
+                       float threshold_bits, uchar64 bins_between, uchar most_bins, __global uchar *moved)
 {
-    return convert_uchar16(convert_float16(sum) * (1.0f / planes) + 1e-3f);
+    uchar between[64];
+    *(bytes64 *)between = bins_between;
+    for (int i = 0; i < 64; i += 16) {
+        uchar16 exceeds = 0;
+        if (any(*(const lanes8 *)(between + i) >= (uchar16)most_bins))
+            exceeds = entropy_exceeds(stack, rows, x + i, y, planes, threshold_bits);
+        *(__global lanes8 *)(moved + i) = exceeds;
+    }
 }
 
-/* One work-item a row. mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. */
-__kernel void stack_statistics(__global const uchar *stack, __global const ulong2 *rows, __global uchar *mean,
-                               __global uchar *moved, int width, int planes, float threshold_bits)
+/* 32 sums of planes divided by their number. */
+inline ushort32 mean_of(ushort32 sums, int planes)
 {
-    const int y = (int)get_group_id(0);
-    const uchar most_bins = (uchar)min(exp2(threshold_bits), (float)BINS);
-    FOR_EACH_32(x, width)
-    {
-        ushort32 sum = 0;
-        uchar32 darkest = 255, brightest = 0;
-        for (int z = 0; z < planes; z++) {
-            const uchar32 luma = *(__global const bytes32 *)(stack + rows[z].x + rows[z].y * (ulong)y + x);
-            sum += widen(luma);
-            darkest = luma < darkest ? luma : darkest;
-            brightest = luma > brightest ? luma : brightest;
-        }
-        const ulong pixel = (ulong)y * width + x;
-        *(__global lanes8 *)(mean + pixel) = mean_of(first_half(sum), planes);
-        *(__global lanes8 *)(mean + pixel + 16) = mean_of(second_half(sum), planes);
+    const int16 even = convert_int16(even_lanes(sums) * (1.0f / planes) + 1e-3f);
+    const int16 odd = convert_int16(odd_lanes(sums) * (1.0f / planes) + 1e-3f);
+    return as_ushort32(even | odd << 16);
+}
 
-        uchar bins_between[32];
-        *(bytes32 *)bins_between = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT);
-        for (int i = 0; i < 32; i += 16) {
-            uchar16 exceeds = 0;
-            if (any(*(const lanes8 *)(bins_between + i) >= (uchar16)most_bins))
-                exceeds = entropy_exceeds(stack, rows, x + i, y, planes, threshold_bits);
-            *(__global lanes8 *)(moved + pixel + i) = exceeds;
-        }
+/* Statistics of 64 pixels; mean and moved point at the first. */
+inline void statistics_of_64(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
+                             float threshold_bits, uchar most_bins, __global uchar *mean, __global uchar *moved)
+{
+    ushort32 even = 0, odd = 0;
+    uchar64 darkest = 255, brightest = 0;
+    for (int z = 0; z < planes; z++) {
+        const uchar64 luma = *(__global const bytes64 *)(stack + rows[z].x + rows[z].y * (ulong)y + x);
+        even += even_bytes(as_ushort32(luma));
+        odd += odd_bytes(as_ushort32(luma));
+        darkest = luma < darkest ? luma : darkest;
+        brightest = luma > brightest ? luma : brightest;
     }
+    *(__global lanes32 *)mean = mean_of(even, planes) | mean_of(odd, planes) << (ushort)8;
+
+    const uchar64 bins_between = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT);
+    const long8 many = __builtin_astype(bins_between >= most_bins, long8);
+    if (any(many != 0))
+        mark_moved(stack, rows, x, y, planes, threshold_bits, bins_between, most_bins, moved);
+    else
+        *(__global bytes64 *)moved = 0;
+}
+
+/* mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. A last tile of less than 64 columns is left to
+ * the one before. */
+inline void tile_statistics(__global const uchar *stack, __global const ulong2 *rows, Tile tile, __global uchar *mean,
+                            __global uchar *moved, int width, int planes, float threshold_bits)
+{
+    const int end = tile.x + TILE_WIDTH + 64 <= width ? tile.x + TILE_WIDTH : width;
+    if (end - tile.x < 64)
+        return;
+    const uchar most_bins = (uchar)min(exp2(threshold_bits), (float)BINS);
+    for (int y = tile.y; y < tile.y + tile.rows; y++)
+        for (int block = tile.x; block < end; block += 64) {
+            const int x = min(block, end - 64);
+            const ulong pixel = (ulong)y * width + x;
+            statistics_of_64(stack, rows, x, y, planes, threshold_bits, most_bins, mean + pixel, moved + pixel);
+        }
 }

@@ -7,8 +7,7 @@ namespace dff {
 CpuPaperMethod::CpuPaperMethod(CommandQueue &queue, const StackShape &shape,
                                const DepthParameters &parameters)
     : queue_(queue), shape_(shape), motion_mask_(parameters.motion_mask), luma_(queue, shape),
-      statistics_(queue, shape, parameters.entropy_bits),
-      focus_(queue, shape, parameters.levels, parameters.tolerance),
+      focus_(queue, shape, parameters.levels, parameters.tolerance, parameters.entropy_bits),
       grid_(queue, shape.width, shape.height, parameters.grid), slice_(queue, shape, grid_),
       depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
 {
@@ -17,10 +16,9 @@ CpuPaperMethod::CpuPaperMethod(CommandQueue &queue, const StackShape &shape,
 void CpuPaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted)
 {
     luma_.run(stack);
-    statistics_.run(luma_);
-    focus_.run(luma_, motion_mask_ ? &statistics_.moved() : nullptr, wanted.confidence);
-    grid_.run(focus_.planes(), statistics_.mean());
-    slice_.run(grid_, statistics_.mean(), coder, depth_);
+    focus_.run(luma_, motion_mask_, wanted.confidence);
+    grid_.run(focus_.planes(), focus_.mean());
+    slice_.run(grid_, focus_.mean(), coder, depth_);
     if (wanted.sparse) {
         if (!sparse_depth_())
             sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));

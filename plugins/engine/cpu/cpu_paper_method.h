@@ -4,7 +4,6 @@
 
 #include "engine/cpu/depth_slice.h"
 #include "engine/cpu/focus_tiles.h"
-#include "engine/cpu/stack_statistics.h"
 #include "engine/depth_method.h"
 #include "engine/depth_parameters.h"
 
@@ -21,7 +20,7 @@ public:
     const cl::Buffer &depth() const override { return depth_; }
     const cl::Buffer &sparse() const override { return sparse_depth_; }
     const cl::Buffer &confidence() const override { return focus_.confidence(); }
-    const cl::Buffer &motion() const override { return statistics_.moved(); }
+    const cl::Buffer &motion() const override { return focus_.moved(); }
     const cl::Buffer *residual() const override { return &grid_.residual_norm(); }
 
 private:
@@ -29,7 +28,6 @@ private:
     StackShape shape_;
     bool motion_mask_;
     LumaPlanes luma_;
-    StackStatistics statistics_;
     FocusTiles focus_;
     LumaGrid grid_;
     DepthSlice slice_;

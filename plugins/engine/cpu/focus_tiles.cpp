@@ -8,7 +8,7 @@ namespace dff {
 
 namespace {
 
-/* TILE_WIDTH and TILE_HEIGHT of focus_tiles.cl, SEGMENT and STRIP of select_ridges.cl */
+/* TILE_WIDTH and TILE_HEIGHT of tile.cl, SEGMENT and STRIP of select_ridges.cl */
 constexpr size_t tile_width = 384, tile_height = 36, segment = 256, strip = 36;
 
 constexpr size_t lanes = 16;
@@ -20,8 +20,9 @@ constexpr size_t parts_of(size_t size, size_t part)
 
 } // namespace
 
-FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned levels, float tolerance)
-    : queue_(queue), shape_(shape), tolerance_(tolerance),
+FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned levels, float tolerance,
+                       float entropy_bits)
+    : queue_(queue), shape_(shape), tolerance_(tolerance), entropy_bits_(entropy_bits),
       stride_((parts_of(shape.width, lanes) + 1) * lanes),
       tiles_(parts_of(shape.width, tile_width), parts_of(shape.height, tile_height)),
       focus_tiles_(
@@ -29,7 +30,9 @@ FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned le
       select_ridges_(Program(queue.device(), "select_ridges").kernel("select_ridges")),
       peak_plane_(queue.allocate(stride_ * shape.height)),
       tile_sums_(queue.allocate(tiles_.get()[0] * tiles_.get()[1] * sizeof(cl_float))),
-      sparse_(queue.allocate(size_t{shape.width} * shape.height))
+      sparse_(queue.allocate(size_t{shape.width} * shape.height)),
+      mean_(queue.allocate(size_t{shape.width} * shape.height)),
+      moved_(queue.allocate(size_t{shape.width} * shape.height))
 {
     /* The columns of 0 between rows, and as many before the first row. */
     const size_t margin = 128, bytes = margin + stride_ * shape.height * sizeof(cl_ushort);
@@ -39,7 +42,7 @@ FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned le
     peak_ = peak_memory_.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region);
 }
 
-void FocusTiles::run(const LumaPlanes &luma, const cl::Buffer *moved, bool with_confidence)
+void FocusTiles::run(const LumaPlanes &luma, bool motion_mask, bool with_confidence)
 {
     const auto width = static_cast<cl_int>(shape_.width), height = static_cast<cl_int>(shape_.height);
     const auto stride = static_cast<cl_int>(stride_), planes = static_cast<cl_int>(shape_.planes);
@@ -50,14 +53,14 @@ void FocusTiles::run(const LumaPlanes &luma, const cl::Buffer *moved, bool with_
     /* A kernel argument must be some buffer, also where it is not used. */
     queue_.begin_stage("focus-measure");
     queue_.run_groups(focus_tiles_, tiles_, luma.bytes(), luma.rows(), peak_, peak_plane_, tile_sums_,
-                      with_confidence ? confidence_ : peak_plane_, stride, width, height, planes, tolerance_,
-                      static_cast<cl_int>(with_confidence));
+                      with_confidence ? confidence_ : peak_plane_, mean_, moved_, stride, width, height,
+                      planes, tolerance_, entropy_bits_, static_cast<cl_int>(with_confidence));
 
     queue_.begin_stage("sparse-depth");
     queue_.run_groups(select_ridges_,
                       {std::max<size_t>(shape_.width / segment, 1), parts_of(shape_.height, strip)}, peak_,
-                      peak_plane_, tile_sums_, tiles, moved ? *moved : peak_plane_, sparse_, stride, width,
-                      height, static_cast<cl_int>(moved != nullptr));
+                      peak_plane_, tile_sums_, tiles, moved_, sparse_, stride, width, height,
+                      static_cast<cl_int>(motion_mask));
 }
 
 } // namespace dff

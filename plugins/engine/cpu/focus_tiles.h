@@ -6,26 +6,31 @@
 
 namespace dff {
 
-/* The planes of the pixels whose focus can be told, on the CPU: (2), (5) of Oliva-García 2022. */
+/* One pass over a stack's luma on the CPU: the planes of the pixels whose focus can be told, (2), (5) of
+ * Oliva-García 2022, the reference R = mean_z I (6), and the pixels whose entropy along z (3) says that they
+ * moved. */
 class FocusTiles {
 public:
-    /* As FocusMeasure and SparseDepth take them. */
-    FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned levels, float tolerance);
+    /* As FocusMeasure, SparseDepth and ZEntropy take them. */
+    FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned levels, float tolerance,
+               float entropy_bits);
 
-    /* Leaves out the pixels that `moved` says (255), if given. */
-    void run(const LumaPlanes &luma, const cl::Buffer *moved, bool with_confidence);
+    /* Without those that moved, if `motion_mask`. */
+    void run(const LumaPlanes &luma, bool motion_mask, bool with_confidence);
 
     const cl::Buffer &planes() const { return sparse_; }         /* uchar[height][width] or unknown_plane */
     const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
+    const cl::Buffer &mean() const { return mean_; }             /* uchar[height][width] */
+    const cl::Buffer &moved() const { return moved_; }           /* uchar[height][width]: 255 = moved */
 
 private:
     CommandQueue &queue_;
     StackShape shape_;
-    float tolerance_;
+    float tolerance_, entropy_bits_;
     size_t stride_;
     cl::NDRange tiles_;
     cl::Kernel focus_tiles_, select_ridges_;
-    cl::Buffer peak_memory_, peak_, peak_plane_, tile_sums_, sparse_, confidence_;
+    cl::Buffer peak_memory_, peak_, peak_plane_, tile_sums_, sparse_, confidence_, mean_, moved_;
 };
 
 } // namespace dff

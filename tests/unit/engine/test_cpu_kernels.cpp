@@ -4,7 +4,6 @@
  * The CPU's kernels against the same twins as the plain ones, within the bounds that kernels/cpu state. */
 #include "engine/cpu/depth_slice.h"
 #include "engine/cpu/focus_tiles.h"
-#include "engine/cpu/stack_statistics.h"
 #include "engine/gaussian_blur.h"
 #include "engine/sparse_depth.h"
 #include "twin_bilateral_grid.h"
@@ -22,17 +21,15 @@ namespace {
 struct Stages {
     explicit Stages(const TestStack &stack, unsigned levels = 3, float entropy_bits = 2.0f)
         : queue(Device::open("")), buffer(queue, stack.shape), luma(queue, stack.shape),
-          statistics(queue, stack.shape, entropy_bits), focus(queue, stack.shape, levels, 1.4f)
+          focus(queue, stack.shape, levels, 1.4f, entropy_bits)
     {
         buffer.assign(stack.view());
         luma.run(buffer);
-        statistics.run(luma);
     }
 
     CommandQueue queue;
     StackBuffer buffer;
     LumaPlanes luma;
-    StackStatistics statistics;
     FocusTiles focus;
 };
 
@@ -95,7 +92,7 @@ TEST_P(FocusTilesShapes, agree_with_the_twin)
     const FocusCase &c = GetParam();
     const TestStack stack = smooth_stack({PixelFormat::Gray8, c.width, c.height, c.planes});
     Stages stages(stack, c.levels);
-    stages.focus.run(stages.luma, nullptr, true);
+    stages.focus.run(stages.luma, false, true);
 
     const twin::Focus focus = twin::focus_product(twin::luma(stack), c.levels);
     const std::vector<uint8_t> expected = twin::sparse_depth(focus, nullptr, 1.4f);
@@ -121,16 +118,20 @@ INSTANTIATE_TEST_SUITE_P(CpuKernels, FocusTilesShapes,
                                          FocusCase{192, 96, 6, 2, 0.03f}, FocusCase{192, 96, 6, 4, 0.06f},
                                          FocusCase{193, 95, 6, 4, 0.25f}));
 
+/* One tile, a last tile too narrow for the lanes, and one that is not. */
 TEST(CpuKernels, statistics_agree_with_the_twins)
 {
-    for (const float threshold : {0.5f, 1.0f, 2.0f}) {
-        const TestStack stack({PixelFormat::Gray8, 97, 66, 11}, 7);
-        Stages stages(stack, 3, threshold);
-        const Volume luma = twin::luma(stack);
-        EXPECT_EQ(read_back<uint8_t>(stages.queue, stages.statistics.mean(), 97 * 66), twin::mean_luma(luma));
-        EXPECT_EQ(read_back<uint8_t>(stages.queue, stages.statistics.moved(), 97 * 66),
-                  twin::z_entropy(luma, threshold));
-    }
+    for (const unsigned width : {97u, 385u, 450u})
+        for (const float threshold : {0.5f, 1.0f, 2.0f}) {
+            const TestStack stack({PixelFormat::Gray8, width, 66, 11}, 7);
+            Stages stages(stack, 3, threshold);
+            stages.focus.run(stages.luma, false, false);
+            const Volume luma = twin::luma(stack);
+            const size_t pixels = size_t{width} * 66;
+            EXPECT_EQ(read_back<uint8_t>(stages.queue, stages.focus.mean(), pixels), twin::mean_luma(luma));
+            EXPECT_EQ(read_back<uint8_t>(stages.queue, stages.focus.moved(), pixels),
+                      twin::z_entropy(luma, threshold));
+        }
 }
 
 class CpuFormats : public testing::TestWithParam<PixelFormat> {};
@@ -162,17 +163,17 @@ TEST_P(LumaGridParameters, depth_agrees_with_the_twin)
     const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
     const TestStack stack = smooth_stack(shape);
     Stages stages(stack);
-    stages.focus.run(stages.luma, nullptr, false);
+    stages.focus.run(stages.luma, false, false);
     LumaGrid grid(stages.queue, 150, 101, GetParam());
     DepthSlice slice(stages.queue, shape, grid);
     const DepthCoder coder(stages.queue, shape);
     const size_t pixels = 150 * 101;
     const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
-    grid.run(stages.focus.planes(), stages.statistics.mean());
-    slice.run(grid, stages.statistics.mean(), coder, depth);
+    grid.run(stages.focus.planes(), stages.focus.mean());
+    slice.run(grid, stages.focus.mean(), coder, depth);
 
     const auto sparse = read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels);
-    const auto luma = read_back<uint8_t>(stages.queue, stages.statistics.mean(), pixels);
+    const auto luma = read_back<uint8_t>(stages.queue, stages.focus.mean(), pixels);
     const Volume expected =
         twin::gaussian_blur(twin::bilateral_solve(sparse, luma, {}, {}, 150, 101, GetParam()),
                             GaussianBlur::taps_for(GetParam().sigma_xy));
@@ -243,10 +244,9 @@ TEST(CpuKernels, a_grid_works_again_after_nothing_was_known)
     for (const TestStack *each : in_turn) {
         stages.buffer.assign(each->view());
         stages.luma.run(stages.buffer);
-        stages.statistics.run(stages.luma);
-        stages.focus.run(stages.luma, nullptr, false);
-        grid.run(stages.focus.planes(), stages.statistics.mean());
-        slice.run(grid, stages.statistics.mean(), coder, depth);
+        stages.focus.run(stages.luma, false, false);
+        grid.run(stages.focus.planes(), stages.focus.mean());
+        slice.run(grid, stages.focus.mean(), coder, depth);
         for (const uint16_t pixel : read_back<uint16_t>(stages.queue, depth, 96 * 80))
             ASSERT_EQ(pixel == 0, each == &blank);
     }
