@@ -196,18 +196,18 @@ TEST(CpuKernels, the_first_start_agrees_with_its_twin)
     const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
     const TestStack stack = smooth_stack(shape);
     Stages stages(stack);
-    stages.focus.run(stages.luma, nullptr, false);
+    stages.focus.run(stages.luma, false, false);
     LumaGrid grid(stages.queue, 150, 101, no_iterations);
     DepthSlice slice(stages.queue, shape, grid);
     const DepthCoder coder(stages.queue, shape);
     const size_t pixels = 150 * 101;
     const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
-    grid.run(stages.focus.planes(), stages.statistics.mean());
-    slice.run(grid, stages.statistics.mean(), coder, depth);
+    grid.run(stages.focus.planes(), stages.focus.mean());
+    slice.run(grid, stages.focus.mean(), coder, depth);
 
     const Volume expected = twin::gaussian_blur(
         twin::spread_start(read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels),
-                           read_back<uint8_t>(stages.queue, stages.statistics.mean(), pixels), 150, 101,
+                           read_back<uint8_t>(stages.queue, stages.focus.mean(), pixels), 150, 101,
                            no_iterations),
         GaussianBlur::taps_for(no_iterations.sigma_xy));
     const auto found = read_back<uint16_t>(stages.queue, depth, pixels);
@@ -219,10 +219,10 @@ TEST(CpuKernels, a_grid_goes_on_from_the_last_solution_where_that_is_better)
 {
     const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
     Stages stages(smooth_stack(shape));
-    stages.focus.run(stages.luma, nullptr, false);
+    stages.focus.run(stages.luma, false, false);
     LumaGrid grid(stages.queue, 150, 101, {16, 16, 0, 0.1f, 6});
     const auto residual_of_run = [&] {
-        grid.run(stages.focus.planes(), stages.statistics.mean());
+        grid.run(stages.focus.planes(), stages.focus.mean());
         return read_back<float>(stages.queue, grid.residual_norm(), 1)[0];
     };
     const float first = residual_of_run();
