@@ -5,7 +5,8 @@
  * work-item a row of the grid.
  *
  * Cells are float[rows + 2][ROW]; a row is [columns + 2][COLUMN] and some padding, a column an empty cell and one for
- * each step of luma. Border, padding and empty cells are 0 in every vector. COLUMN, ROW, COLUMNS and ROWS are built in.
+ * each step of luma. Border, padding and empty cells are 0 in every vector. COLUMN, ROW, COLUMNS, ROWS, SIGMA_XY and SIGMA_LUMA are
+ * built in.
  *
  * The unknowns are scaled by the diagonal of A, x = sqrt(D) y, so that one coefficient a cell holds the whole system:
  *
@@ -84,7 +85,7 @@ inline uchar lowest(uchar16 v)
 }
 
 /* The steps of luma between which an area lies. */
-inline int2 steps_of(__global const uchar *luma, Area area, int width, int sigma_luma)
+inline int2 steps_of(__global const uchar *luma, Area area, int width)
 {
     uchar16 darkest = 255, brightest = 0;
     for (int x = area.left; x < area.right; x += 16)
@@ -93,7 +94,7 @@ inline int2 steps_of(__global const uchar *luma, Area area, int width, int sigma
             darkest = min(darkest, pixels);
             brightest = max(brightest, pixels);
         }
-    return (int2)(lowest(darkest), 255 - lowest(~brightest)) / sigma_luma;
+    return (int2)(lowest(darkest), 255 - lowest(~brightest)) / SIGMA_LUMA;
 }
 
 inline float sum_of_shorts(ushort16 v)
@@ -133,20 +134,19 @@ inline float3 count_step(__global const uchar *sparse, __global const uchar *lum
 /* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
  * row_sums: (target, weight) of the row. */
 __kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight,
-                         Cells target, Cells n, __global float2 *row_sums, int width, int height, int sigma_xy,
-                         int sigma_luma)
+                         Cells target, Cells n, __global float2 *row_sums, int width, int height)
 {
-    const int top = (int)get_group_id(0) * sigma_xy;
+    const int top = (int)get_group_id(0) * SIGMA_XY;
     float2 sums = 0.0f;
     int cell = first_cell() + COLUMN + 1;
-    for (int left = 0; left < width; left += sigma_xy, cell += COLUMN) {
-        const Area area = {left, min(left + sigma_xy, width), top, min(top + sigma_xy, height)};
-        const int2 steps = steps_of(luma, area, width, sigma_luma);
+    for (int left = 0; left < width; left += SIGMA_XY, cell += COLUMN) {
+        const Area area = {left, min(left + SIGMA_XY, width), top, min(top + SIGMA_XY, height)};
+        const int2 steps = steps_of(luma, area, width);
         for (int step = 0; step < COLUMN - 1; step++) {
             float3 count = 0.0f;
             if (step >= steps.x && step <= steps.y)
-                count = count_step(sparse, luma, area, width, (short)(step * sigma_luma),
-                                   (short)((step + 1) * sigma_luma));
+                count = count_step(sparse, luma, area, width, (short)(step * SIGMA_LUMA),
+                                   (short)((step + 1) * SIGMA_LUMA));
             mass[cell + step] = count.x;
             weight[cell + step] = count.y;
             target[cell + step] = count.z;

@@ -2,12 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * For CPUs, tile by tile: the slice of bilateral_grid.cl, the Gaussian of gaussian_blur.cl and the coding of
- * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and the grid's COLUMN and ROW of luma_grid.cl, are
- * built in.
+ * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and what luma_grid.cl says of the grid, are built in.
  */
+#include "lanes32.cl"
+
 #define TILE_WIDTH 256 /* multiple of 16 */
 #define TILE_HEIGHT 64
-#define TOGETHER 4 /* rows blurred at once, a divisor of TILE_HEIGHT */
+#define AHEAD 4    /* rows of luma asked for ahead */
+#define TOGETHER 8 /* rows blurred at once, a divisor of TILE_HEIGHT */
 #if RADIUS <= 24
 #define UNROLL_SMALL __attribute__((opencl_unroll_hint))
 #else
@@ -42,39 +44,47 @@ inline void blur_columns(const float *u, __constant float *taps, float *blurred)
         *(float16 *)(blurred + k * STRIDE) = sums[k];
 }
 
-inline int lowest(uchar16 v)
+/* Values of a table of 16 at `index`: the compiler's pattern for one permutation where the processor has it. */
+inline float16 look_up(float16 table, int16 index)
 {
-    const uchar8 a = min(v.lo, v.hi);
-    const uchar4 b = min(a.lo, a.hi);
-    const uchar2 c = min(b.lo, b.hi);
-    return min(c.lo, c.hi);
+    float16 found;
+    __attribute__((opencl_unroll_hint))
+    for (int i = 0; i < 16; i++)
+        found[i] = table[index[i]];
+    return found;
 }
 
-/* Slices rows y to end (mirrored) of the 16 columns from x on, which take `column`, a cell for each step of luma. Of
- * the cells only those between the darkest and the brightest pixel are looked at; the last lanes may be other columns',
- * which write theirs later. */
-inline void slice_cells(__global const uchar *luma, int width, int height, int x, int y, int end,
-                        __global const float *column, int sigma_luma, float *u)
+/* Positions of 16 pixels in one column of the grid, a cell for each step of luma. */
+inline float16 slice_16(__global const float *column, uchar16 luma)
 {
-    const int first = min(x, width - 16); /* at the right border the lanes before x come along */
-    uchar16 darkest = 255, brightest = 0;
-    for (int i = y; i < end; i++) {
-        const uchar16 row = *(__global const lanes8 *)(luma + (ulong)mirror(i, height) * width + first);
-        darkest = min(darkest, row);
-        brightest = max(brightest, row);
-    }
-    const int from = lowest(darkest) / sigma_luma, to = (255 - lowest(~brightest)) / sigma_luma;
-    for (int i = y; i < end; i++, u += STRIDE) {
-        const uchar16 row = *(__global const lanes8 *)(luma + (ulong)mirror(i, height) * width + first);
-        float16 position = column[from];
-        for (int step = from + 1; step <= to; step++)
-            position = select(position, (float16)column[step],
-                              convert_int16(row >= (uchar16)(uchar)(step * sigma_luma)));
-        if (first == x)
-            *(flanes *)(u + x) = position;
-        else
-            for (int lane = x - first; lane < 16; lane++)
-                u[first + lane] = ((const float *)&position)[lane];
+    const int16 step = convert_int16(luma) / SIGMA_LUMA;
+#if COLUMN <= 17
+    return look_up(*(__global const flanes *)column, step);
+#else
+    float lanes[16];
+    for (int i = 0; i < 16; i++)
+        lanes[i] = column[step[i]];
+    return *(const flanes *)lanes;
+#endif
+}
+
+/* Slices the columns from..to of a row. */
+inline void slice_row(__global const float *cells, __global const uchar *luma, int width, int from, int to, float *u)
+{
+    for (int x = from; x < to;) {
+        __global const float *column = cells + x / SIGMA_XY * COLUMN;
+        const int column_end = min((x / SIGMA_XY + 1) * SIGMA_XY, to);
+        for (; x < column_end; x += 16) { /* the last lanes may be other columns', which write theirs later */
+            const int first = min(x, width - 16); /* at the right border the lanes before x come along */
+            PREFETCH(luma + AHEAD * width + x);
+            const float16 position = slice_16(column, *(__global const lanes8 *)(luma + first));
+            if (first == x)
+                *(flanes *)(u + x) = position;
+            else
+                for (int lane = x - first; lane < 16; lane++)
+                    u[first + lane] = position[lane];
+        }
+        x = column_end;
     }
 }
 
@@ -82,33 +92,23 @@ inline void slice_cells(__global const uchar *luma, int width, int height, int x
  * code is its number among the 65535 of depth_code.cl, and `codes` is not read. */
 __kernel void slice_depth(__global const float *solution, __global const uchar *luma, __constant float *taps,
                           __global const ushort *codes, __global ushort *depth, int width, int height, int stride,
-                          int sigma_xy, int sigma_luma, int planes, int linear)
+                          int planes, int linear)
 {
     float u[(TILE_HEIGHT + 2 * RADIUS + 1) * STRIDE] __attribute__((aligned(64)));
     float rows[TOGETHER * STRIDE] __attribute__((aligned(64)));
     const int left = (int)get_group_id(0) * TILE_WIDTH, right = min(left + TILE_WIDTH, width);
     const int top = (int)get_group_id(1) * TILE_HEIGHT, bottom = min(top + TILE_HEIGHT, height);
 
-    for (int y = top - RADIUS; y < bottom + RADIUS;) {
-        const int cell_row = mirror(y, height) / sigma_xy;
-        int end = y + 1;
-        while (end < bottom + RADIUS && mirror(end, height) / sigma_xy == cell_row)
-            end++;
-        __global const float *cells = solution + (cell_row + 1) * ROW + COLUMN + 1;
-        const int from = max(left - RADIUS, 0), to = min(right + RADIUS, width);
-        float *out = u + (y - top + RADIUS) * STRIDE + ORIGIN - left;
-        for (int x = from; x < to;) {
-            const int column_end = min((x / sigma_xy + 1) * sigma_xy, to);
-            for (; x < column_end; x += 16)
-                slice_cells(luma, width, height, x, y, end, cells + x / sigma_xy * COLUMN, sigma_luma, out);
-            x = column_end;
-        }
-        for (; y < end; y++, out += STRIDE) {
-            for (int x = left - RADIUS; x < from; x++)
-                out[x] = out[min(-x, to - 1)];
-            for (int x = to; x < right + RADIUS; x++)
-                out[x] = out[max(2 * width - 2 - x, from)];
-        }
+    const int from = max(left - RADIUS, 0), to = min(right + RADIUS, width);
+    for (int y = top - RADIUS; y < bottom + RADIUS; y++) {
+        const int inside = mirror(y, height);
+        float *row = u + (y - top + RADIUS) * STRIDE + ORIGIN - left;
+        slice_row(solution + (inside / SIGMA_XY + 1) * ROW + COLUMN + 1, luma + (ulong)inside * width, width, from, to,
+                  row);
+        for (int x = left - RADIUS; x < from; x++)
+            row[x] = row[min(-x, to - 1)];
+        for (int x = to; x < right + RADIUS; x++)
+            row[x] = row[max(2 * width - 2 - x, from)];
     }
 
     const float top_code = 65534.0f / (planes - 1);
@@ -124,18 +124,14 @@ __kernel void slice_depth(__global const float *solution, __global const uchar *
             for (int i = 1; i <= RADIUS; i++)
                 sum += taps[i] * symmetric_tap(centre, i);
             const float16 code = clamp(sum * top_code, 0.0f, 65534.0f) + 1.5f;
-            ushort lanes[16];
-            *(lanes16 *)lanes = convert_ushort16(isnan(sum) ? (float16)0.0f : code);
+            const ushort16 coded = convert_ushort16(isnan(sum) ? (float16)0.0f : code);
             __global ushort *out = depth + (ulong)y * stride + left + x;
             const int inside = min(right - left - x, 16);
-            if (!linear)
-                for (int i = 0; i < inside; i++)
-                    lanes[i] = codes[lanes[i]];
-            if (inside == 16)
-                *(__global lanes16 *)out = *(lanes16 *)lanes;
+            if (linear && inside == 16)
+                *(__global lanes16 *)out = coded;
             else
                 for (int i = 0; i < inside; i++)
-                    out[i] = lanes[i];
+                    out[i] = linear ? coded[i] : codes[coded[i]];
         }
     }
 }

@@ -35,7 +35,6 @@ void DepthSlice::run(const LumaGrid &grid, const cl::Buffer &luma, const DepthCo
         kernel_,
         {(shape_.width + tile_width - 1) / tile_width, (shape_.height + tile_height - 1) / tile_height},
         grid.solution(), luma, taps_, coder.codes(), depth, width, static_cast<cl_int>(shape_.height), width,
-        static_cast<cl_int>(grid.parameters().sigma_xy), static_cast<cl_int>(grid.parameters().sigma_luma),
         static_cast<cl_int>(shape_.planes), static_cast<cl_int>(coder.is_linear()));
 }
 

@@ -47,7 +47,9 @@ LumaGrid::LumaGrid(CommandQueue &queue, uint32_t width, uint32_t height,
 std::string LumaGrid::build_options() const
 {
     return "-DCOLUMN=" + std::to_string(column_cells_) + " -DROW=" + std::to_string(row_cells_) +
-           " -DCOLUMNS=" + std::to_string(columns_) + " -DROWS=" + std::to_string(rows_);
+           " -DCOLUMNS=" + std::to_string(columns_) + " -DROWS=" + std::to_string(rows_) +
+           " -DSIGMA_XY=" + std::to_string(parameters_.sigma_xy) +
+           " -DSIGMA_LUMA=" + std::to_string(parameters_.sigma_luma);
 }
 
 void LumaGrid::build_kernels()
@@ -96,8 +98,7 @@ void LumaGrid::run(const cl::Buffer &sparse, const cl::Buffer &luma)
 void LumaGrid::splat(const cl::Buffer &sparse, const cl::Buffer &luma)
 {
     queue_.run_groups(splat_, {rows_}, sparse, luma, mass_, weight_, target_, n_, row_sums_,
-                      static_cast<cl_int>(width_), static_cast<cl_int>(height_),
-                      static_cast<cl_int>(parameters_.sigma_xy), static_cast<cl_int>(parameters_.sigma_luma));
+                      static_cast<cl_int>(width_), static_cast<cl_int>(height_));
     for (unsigned i = 0; i < bistochastisations; i++) {
         queue_.run_groups(normalise_, {rows_}, mass_, n_, next_n_);
         std::swap(n_, next_n_);

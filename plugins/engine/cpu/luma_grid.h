@@ -23,7 +23,7 @@ public:
     /* float: the residual the solver left, in parts of the right-hand side. */
     const cl::Buffer &residual_norm() const { return residual_norm_; }
 
-    /* Options for kernels that read the solution: COLUMN, ROW, COLUMNS, ROWS of luma_grid.cl. */
+    /* Options for kernels that read the solution: those of luma_grid.cl. */
     std::string build_options() const;
 
     const BilateralGrid::Parameters &parameters() const { return parameters_; }
