@@ -64,6 +64,15 @@ LightFieldGeometry::LightFieldGeometry(const LightFieldParameters &parameters, P
     reach = greatest_slope(parameters);
 }
 
+LightFieldGeometry::Columns LightFieldGeometry::columns() const
+{
+    const double highest = std::max(std::abs(lowest), std::abs(lowest + range));
+    const int beside = static_cast<int>(std::ceil(reach * highest)) + 2;
+    const int begin = static_cast<int>(std::floor(first.x)) - beside;
+    const int end = static_cast<int>(std::ceil(first.x + scale.x * view.x)) + beside;
+    return {begin, end - begin + 1};
+}
+
 double view_slope(unsigned view, unsigned views, double cone)
 {
     return views > 1 ? std::tan(cone * (static_cast<double>(view) / (views - 1) - 0.5)) : 0.0;

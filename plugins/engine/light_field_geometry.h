@@ -24,6 +24,13 @@ struct LightFieldGeometry {
     double reach;      /* the greatest slope of a ray */
 
     glm::dvec2 start(glm::dvec2 pixel) const { return first + scale * pixel; }
+
+    /* The columns of the layers, also beyond their ends, that rays of a view's row meet between the heights.
+     */
+    struct Columns {
+        int first, count;
+    };
+    Columns columns() const;
 };
 
 /* How far the rays of view `view` of `views` lean, tan of their angle: off-axis cameras side by side, whose

@@ -48,12 +48,14 @@ void LightFieldLayers::run(const ColorAndDepth &pictures, const cl::Buffer &posi
     const auto zero = static_cast<cl_float>(1.0 + geometry.lowest / geometry.range);
     const auto reach = static_cast<cl_int>(std::ceil(geometry.reach * geometry.range)) + 1;
 
-    queue_.begin_stage("layers");
+    queue_.begin_stage("colour");
     queue_.run(shrink_color_, pixels, pictures.color, pictures.color_stride, pictures.channels, source,
                color_, size);
+    queue_.begin_stage("height");
     queue_.run(height_of_depth_, pixels, pictures.depth, pictures.depth_stride, positions, source, height_,
                size, zero, static_cast<cl_float>(geometry.range));
     queue_.run_groups(fill_unknown_, rows, height_, size_.x);
+    queue_.begin_stage("hidden");
     queue_.run_groups(hide_, rows, color_, height_, hidden_color_, hidden_height_, grounds_, size_.x,
                       step_of(geometry), reach);
 }

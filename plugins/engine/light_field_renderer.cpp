@@ -23,14 +23,21 @@ cl_int channels_of(PixelFormat format)
     return format == PixelFormat::Rgb || format == PixelFormat::Bgr ? 3 : 4;
 }
 
-bool in_rows(const Device &device)
+/* light_field_row.cl and light_field_lenses.cl */
+constexpr unsigned strips = 64;
+constexpr unsigned bins = 24;
+constexpr unsigned bin_steps = 16;
+
+constexpr unsigned pitch_of(unsigned width)
 {
-    return device.kernel_style() == KernelStyle::Tiles;
+    return (width + 31) / 16 * 16;
 }
 
-bool is_of_views(LightFieldLayout layout)
+/* Whether rows are rendered as a whole, without a search, or rays one by one. */
+bool in_rows(const Device &device, LightFieldLayout layout)
 {
-    return layout == LightFieldLayout::Quilt || layout == LightFieldLayout::Views;
+    return device.kernel_style() == KernelStyle::Tiles && layout != LightFieldLayout::Elemental &&
+           layout != LightFieldLayout::Rgbd;
 }
 
 cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
@@ -39,12 +46,13 @@ cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
     case LightFieldLayout::Rgbd:
         return Program(device, "light_field_rgbd").kernel("rgbd");
     case LightFieldLayout::Lenticular:
-        return Program(device, "light_field_panel").kernel("lenticular");
+        return in_rows(device, layout) ? Program(device, "light_field_lenses").kernel("lenticular_rows")
+                                       : Program(device, "light_field_panel").kernel("lenticular");
     case LightFieldLayout::Elemental:
         return Program(device, "light_field_panel").kernel("elemental");
     default:
-        return in_rows(device) ? Program(device, "light_field_rows").kernel("view_rows")
-                               : Program(device, "light_field_views").kernel("views");
+        return in_rows(device, layout) ? Program(device, "light_field_rows").kernel("view_rows")
+                                       : Program(device, "light_field_views").kernel("views");
     }
 }
 
@@ -58,6 +66,18 @@ cl_float4 rows_of(const glm::dmat2 &m)
 unsigned rows_of_views(const LightFieldParameters &parameters)
 {
     return parameters.layout == LightFieldLayout::Quilt ? parameters.rows : 1;
+}
+
+/* The slopes that a kernel looks up: of each view, or of even turns from the middle to the cone's edge. */
+std::vector<cl_float> slopes_of(const LightFieldParameters &parameters)
+{
+    const bool lenticular = parameters.layout == LightFieldLayout::Lenticular;
+    const unsigned turns = bins * bin_steps;
+    const unsigned views = lenticular ? 2 * turns + 1 : parameters.columns * rows_of_views(parameters);
+    std::vector<cl_float> slopes;
+    for (unsigned view = lenticular ? turns : 0; view < views; view++)
+        slopes.push_back(static_cast<cl_float>(view_slope(view, views, parameters.view_cone)));
+    return slopes;
 }
 
 std::vector<float> index_positions()
@@ -101,14 +121,24 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
             return;
         if (!layers_ || layers_->size() != geometry_.layers)
             layers_.emplace(queue_, geometry_.layers);
-        const unsigned views = parameters.columns * rows_of_views(parameters);
-        std::vector<cl_float> slopes;
-        for (unsigned view = 0; view < views; view++)
-            slopes.push_back(static_cast<cl_float>(view_slope(view, views, parameters.view_cone)));
+        const std::vector<cl_float> slopes = slopes_of(parameters);
         slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
         queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),
                                              slopes.data());
+        if (in_rows(*device_, parameters.layout))
+            prepare_rows();
     });
+}
+
+void LightFieldRenderer::prepare_rows()
+{
+    columns_ = geometry_.columns();
+    const unsigned pitch = pitch_of(static_cast<unsigned>(columns_.count));
+    const unsigned view_pitch = pitch_of(static_cast<unsigned>(geometry_.view.x));
+    const bool lenticular = parameters_.layout == LightFieldLayout::Lenticular;
+    scratch_size_ =
+        static_cast<cl_int>(8 * pitch + (lenticular ? (bins + 1) * pitch : 2 * pitch + 5 * view_pitch));
+    scratch_ = queue_.allocate(strips * sizeof(cl_uint) * static_cast<size_t>(scratch_size_));
 }
 
 cl::Buffer LightFieldRenderer::wrap(std::span<const std::byte> memory, cl_mem_flags access) const
@@ -151,8 +181,8 @@ void LightFieldRenderer::trace(const Output &output)
         trace_elemental(index, output);
     else
         trace_views(index, output);
-    if (is_of_views(parameters_.layout) && in_rows(*device_))
-        queue_.run_groups(kernel_, {parameters_.columns, shape_.output.height});
+    if (in_rows(*device_, parameters_.layout))
+        queue_.run_groups(kernel_, cl::NDRange(strips));
     else
         queue_.run(kernel_, {shape_.output.width, shape_.output.height});
 }
@@ -169,18 +199,29 @@ void LightFieldRenderer::set_trace_arguments(cl_uint index, const Output &output
 
 void LightFieldRenderer::trace_views(cl_uint index, const Output &output)
 {
-    set_trace_arguments(index, output, slopes_, to_int2({parameters_.columns, rows_of_views(parameters_)}),
-                        to_int2(geometry_.view));
+    const cl_int2 layout = to_int2({parameters_.columns, rows_of_views(parameters_)});
+    const cl_int2 view = to_int2(geometry_.view);
+    if (in_rows(*device_, parameters_.layout))
+        set_trace_arguments(index, output, slopes_, layout, view, columns_.first, columns_.count, scratch_,
+                            scratch_size_);
+    else
+        set_trace_arguments(index, output, slopes_, layout, view);
 }
 
 void LightFieldRenderer::trace_lenticular(cl_uint index, const Output &output)
 {
     const LenticularSheet &sheet = parameters_.sheet;
     const bool descending = is_blue_first(shape_.format) != sheet.flip_subpixels;
-    set_trace_arguments(index, output, static_cast<cl_float>(sheet.pitch), static_cast<cl_float>(sheet.tilt),
-                        static_cast<cl_float>(sheet.center), static_cast<cl_float>(parameters_.view_cone),
-                        descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}},
-                        cl_int4{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}});
+    const auto pitch = static_cast<cl_float>(sheet.pitch), tilt = static_cast<cl_float>(sheet.tilt),
+               center = static_cast<cl_float>(sheet.center);
+    const cl_int4 subpixels = descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}};
+    const cl_int4 flips{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}};
+    if (in_rows(*device_, parameters_.layout))
+        set_trace_arguments(index, output, pitch, tilt, center, slopes_, subpixels, flips, columns_.first,
+                            columns_.count, scratch_, scratch_size_);
+    else
+        set_trace_arguments(index, output, pitch, tilt, center, static_cast<cl_float>(parameters_.view_cone),
+                            subpixels, flips);
 }
 
 void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)

@@ -58,6 +58,7 @@ private:
     };
 
     cl::Buffer wrap(std::span<const std::byte> memory, cl_mem_flags access) const;
+    void prepare_rows();
     void trace(const Output &output);
     void trace_views(cl_uint index, const Output &output);
     void trace_lenticular(cl_uint index, const Output &output);
@@ -75,6 +76,11 @@ private:
     std::optional<LightFieldLayout> built_; /* what kernel_ is for */
     cl::Kernel kernel_;
     cl::Buffer positions_, slopes_;
+
+    /* Of kernels in rows: the columns of the layers they work on, and their memory. */
+    LightFieldGeometry::Columns columns_{};
+    cl_int scratch_size_ = 0;
+    cl::Buffer scratch_;
     StageTimes times_;
 };
 
