@@ -36,6 +36,15 @@ inline uint blend(uchar4 a, uchar4 b, float t)
     return as_uint(convert_uchar4(mix(convert_float4(a), convert_float4(b), t) + 0.5f));
 }
 
+/* The first of the places first + k / per_place, k in 0..last, at or behind each of 16 places; `last` behind the last one. */
+inline int16 first_behind(float16 place, float first, float per_place, int last)
+{
+    const float16 exact = (place - first) * per_place;
+    int16 behind = convert_int16(exact);
+    behind -= convert_float16(behind) < exact;
+    return behind < 0 ? 0 : behind > last ? last : behind;
+}
+
 /* The heights of the layers' row nearest to point_y, from the column `base` on. */
 inline void load_heights(const Layers *layers, int y, int base, const Row *row, const Row *mirrored)
 {

@@ -28,15 +28,10 @@ inline Painter make_painter(__global uint *scratch, int width, int view_width)
  * first + scale x. */
 inline void find_seen(const Painter *painter, const Row *row, float slope, float first, float scale, int width)
 {
-    const float per_layer = 1.0f / scale;
     for (int j = 0; j < row->width; j += 16) {
         const float16 place = LANES + (float)j - slope * *(__global const float16 *)(row->height + j);
-        const float16 column = (place - first) * per_layer;
-        int16 above = convert_int16(column);
-        above -= convert_float16(above) < column;
-        above = above < 0 ? 0 : above > width ? width : above;
         *(__global float16 *)(painter->places + j) = place;
-        *(__global int16 *)(painter->columns + j) = above;
+        *(__global int16 *)(painter->columns + j) = first_behind(place, first, 1.0f / scale, width);
     }
     for (int x = 0; x < width; x += 16)
         *(__global int16 *)(painter->seen + x) = 0;
