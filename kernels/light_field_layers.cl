@@ -8,12 +8,13 @@
  * end of the sweep.
  */
 
-/* The mean colour of the source pixels that a pixel covers. channels: bytes a pixel of the source, 3 or 4. */
+/* The mean colour of the source pixels that a pixel covers. channels: bytes a pixel of the source, 3 or 4. columns: the first
+ * of the layers' that are needed, and the one behind the last. Work-items (columns, rows). */
 __kernel void shrink_color(__global const uchar *source, ulong stride, int channels, int2 source_size,
-                           __global uchar4 *color, int2 size)
+                           __global uchar4 *color, int2 size, int2 columns)
 {
-    const int x = (int)get_global_id(0), y = (int)get_global_id(1);
-    if (x >= size.x)
+    const int x = columns.x + (int)get_global_id(0), y = (int)get_global_id(1);
+    if (x >= columns.y)
         return;
     const float2 scale = convert_float2(source_size) / convert_float2(size);
     const float left = x * scale.x, right = left + scale.x, top = y * scale.y, bottom = top + scale.y;
@@ -31,10 +32,10 @@ __kernel void shrink_color(__global const uchar *source, ulong stride, int chann
 
 /* The height of the source pixel in the middle of each pixel; NAN where it has no depth. positions: u by depth pixel. */
 __kernel void height_of_depth(__global const uchar *depth, ulong stride, __global const float *positions,
-                              int2 source_size, __global float *height, int2 size, float zero, float range)
+                              int2 source_size, __global float *height, int2 size, int2 columns, float zero, float range)
 {
-    const int x = (int)get_global_id(0), y = (int)get_global_id(1);
-    if (x >= size.x)
+    const int x = columns.x + (int)get_global_id(0), y = (int)get_global_id(1);
+    if (x >= columns.y)
         return;
     const int i = min((int)((x + 0.5f) * source_size.x / size.x), source_size.x - 1);
     const int j = min((int)((y + 0.5f) * source_size.y / size.y), source_size.y - 1);
@@ -44,9 +45,10 @@ __kernel void height_of_depth(__global const uchar *depth, ulong stride, __globa
 
 /* Gives pixels without a height the lower, farther one of their known neighbours in the row. A row without any lies in the
  * plane of zero parallax. Work-items (rows). */
-__kernel void fill_unknown(__global float *height, int width)
+__kernel void fill_unknown(__global float *height, int stride, int2 columns)
 {
-    __global float *row = height + (size_t)get_global_id(0) * width;
+    __global float *row = height + (size_t)get_global_id(0) * stride + columns.x;
+    const int width = columns.y - columns.x;
     int x = 0;
     while (x < width) {
         if (!isnan(row[x])) {
@@ -85,9 +87,10 @@ inline int mirrored(__global const float *row, int width, int x, int ground, flo
  * two grounds the lower is taken, and near the middle of equal ones both are mixed. Work-items (rows); grounds: an int a
  * pixel. */
 __kernel void hide(__global const uchar4 *color, __global const float *height, __global uchar4 *hidden_color,
-                   __global float *hidden_height, __global int *grounds, int width, float step, int reach)
+                   __global float *hidden_height, __global int *grounds, int stride, int2 columns, float step, int reach)
 {
-    const size_t start = (size_t)get_global_id(0) * width;
+    const size_t start = (size_t)get_global_id(0) * stride + columns.x;
+    const int width = columns.y - columns.x;
     color += start, height += start, hidden_color += start, hidden_height += start, grounds += start;
     grounds[width - 1] = -1;
     for (int x = width - 2, ground = -1; x >= 0; x--)

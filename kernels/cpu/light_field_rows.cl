@@ -85,7 +85,7 @@ inline void paint(const Layers *layers, const Painter *painter, const Row *row, 
             const float places[4] = {place.s0, place.s1, place.s2, place.s3};
             const int is_torn[4] = {torn.s0, torn.s1, torn.s2, torn.s3};
             uint behind[4] = {colors.s0, colors.s1, colors.s2, colors.s3};
-            for (int i = 0; i < 4; i++)
+            for (int i = 0; i < min(4, width - x); i++)
                 if (is_torn[i])
                     behind[i] = as_uint(convert_uchar4(look_behind(row, places[i], painter->seen[x + i], slope, layers->step,
                                                                    layers->heights.x, layers->fill) + 0.5f));

@@ -4,15 +4,33 @@
 
 #include "engine/opencl/program.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dff {
 
 namespace {
 
+constexpr size_t strips = 64; /* of light_field_shrink.cl */
+
 float step_of(const LightFieldGeometry &geometry)
 {
     return static_cast<float>(LightFieldLayers::edge_step * geometry.range);
+}
+
+int reach_of(const LightFieldGeometry &geometry)
+{
+    return static_cast<int>(std::ceil(geometry.reach * geometry.range)) + 1;
+}
+
+/* The first column of the layers that is needed, and the one behind the last: what rays meet, beside it the
+ * ground that is hidden, and beside that what it is continued with. */
+cl_int2 columns_of(const LightFieldGeometry &geometry)
+{
+    const auto [first, count] = geometry.columns();
+    const int beside = 2 * reach_of(geometry);
+    return {{std::clamp(first - beside, 0, geometry.layers.x - 1),
+             std::clamp(first + count + beside, 1, geometry.layers.x)}};
 }
 
 } // namespace
@@ -27,10 +45,17 @@ cl_int2 to_int2(glm::ivec2 vector)
     return {{vector.x, vector.y}};
 }
 
-LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size) : queue_(queue), size_(size)
+LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size, PictureSize source)
+    : queue_(queue), size_(size), in_rows_(queue.device().kernel_style() == KernelStyle::Tiles),
+      sums_size_(static_cast<cl_int>((4 * source.width + 31) / 16 * 16))
 {
     const Program program(queue.device(), "light_field_layers");
-    shrink_color_ = program.kernel("shrink_color");
+    if (in_rows_) {
+        shrink_color_ = Program(queue.device(), "light_field_shrink").kernel("shrink_color_rows");
+        sums_ = queue.allocate(strips * sizeof(cl_float) * static_cast<size_t>(sums_size_));
+    } else {
+        shrink_color_ = program.kernel("shrink_color");
+    }
     height_of_depth_ = program.kernel("height_of_depth");
     fill_unknown_ = program.kernel("fill_unknown");
     hide_ = program.kernel("hide");
@@ -39,25 +64,36 @@ LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size) : queue
         *buffer = queue.allocate(4 * pixels);
 }
 
+void LightFieldLayers::shrink_color(const ColorAndDepth &pictures, cl_int2 columns)
+{
+    const cl_int2 source = to_int2({pictures.size.width, pictures.size.height}), size = to_int2(size_);
+    if (in_rows_)
+        queue_.run_groups(shrink_color_, cl::NDRange(strips), pictures.color, pictures.color_stride,
+                          pictures.channels, source, color_, size, columns, sums_, sums_size_);
+    else
+        queue_.run(shrink_color_,
+                   {static_cast<size_t>(columns.s[1] - columns.s[0]), static_cast<size_t>(size_.y)},
+                   pictures.color, pictures.color_stride, pictures.channels, source, color_, size, columns);
+}
+
 void LightFieldLayers::run(const ColorAndDepth &pictures, const cl::Buffer &positions,
                            const LightFieldGeometry &geometry)
 {
     const cl_int2 source = to_int2({pictures.size.width, pictures.size.height}), size = to_int2(size_);
-    const cl::NDRange pixels(static_cast<size_t>(size_.x), static_cast<size_t>(size_.y));
+    const cl_int2 columns = columns_of(geometry);
+    const cl::NDRange pixels(static_cast<size_t>(columns.s[1] - columns.s[0]), static_cast<size_t>(size_.y));
     const cl::NDRange rows(static_cast<size_t>(size_.y));
     const auto zero = static_cast<cl_float>(1.0 + geometry.lowest / geometry.range);
-    const auto reach = static_cast<cl_int>(std::ceil(geometry.reach * geometry.range)) + 1;
 
     queue_.begin_stage("colour");
-    queue_.run(shrink_color_, pixels, pictures.color, pictures.color_stride, pictures.channels, source,
-               color_, size);
-    queue_.begin_stage("height");
+    shrink_color(pictures, columns);
+    queue_.begin_stage("heights");
     queue_.run(height_of_depth_, pixels, pictures.depth, pictures.depth_stride, positions, source, height_,
-               size, zero, static_cast<cl_float>(geometry.range));
-    queue_.run_groups(fill_unknown_, rows, height_, size_.x);
+               size, columns, zero, static_cast<cl_float>(geometry.range));
+    queue_.run_groups(fill_unknown_, rows, height_, size_.x, columns);
     queue_.begin_stage("hidden");
-    queue_.run_groups(hide_, rows, color_, height_, hidden_color_, hidden_height_, grounds_, size_.x,
-                      step_of(geometry), reach);
+    queue_.run_groups(hide_, rows, color_, height_, hidden_color_, hidden_height_, grounds_, size_.x, columns,
+                      step_of(geometry), reach_of(geometry));
 }
 
 cl_uint LightFieldLayers::set_arguments(cl::Kernel &kernel, const LightFieldGeometry &geometry,

@@ -21,7 +21,7 @@ public:
     /* Steps of more than this share of the sweep are edges of things, which hide what is behind them. */
     static constexpr double edge_step = 0.02;
 
-    LightFieldLayers(CommandQueue &queue, glm::ivec2 size);
+    LightFieldLayers(CommandQueue &queue, glm::ivec2 size, PictureSize source);
 
     glm::ivec2 size() const { return size_; }
 
@@ -32,8 +32,13 @@ public:
     cl_uint set_arguments(cl::Kernel &kernel, const LightFieldGeometry &geometry, bool fill) const;
 
 private:
+    void shrink_color(const ColorAndDepth &pictures, cl_int2 columns);
+
     CommandQueue &queue_;
     glm::ivec2 size_;
+    bool in_rows_;
+    cl_int sums_size_;
+    cl::Buffer sums_; /* of shrinking in rows */
     cl::Kernel shrink_color_, height_of_depth_, fill_unknown_, hide_;
     cl::Buffer color_, height_, hidden_color_, hidden_height_, grounds_;
 };

@@ -120,7 +120,7 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
         if (parameters.layout == LightFieldLayout::Rgbd)
             return;
         if (!layers_ || layers_->size() != geometry_.layers)
-            layers_.emplace(queue_, geometry_.layers);
+            layers_.emplace(queue_, geometry_.layers, shape_.picture);
         const std::vector<cl_float> slopes = slopes_of(parameters);
         slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
         queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),

@@ -191,6 +191,27 @@ TEST(Renderer, rgbd_is_colour_and_depth_and_near_is_white)
     }
 }
 
+TEST(Renderer, both_kinds_of_kernels_show_the_same_when_views_are_small)
+{
+    const Picture picture({150, 100});
+    LightFieldParameters quilt;
+    quilt.columns = 4;
+    quilt.rows = 3;
+    quilt.view_aspect = 0.6; /* crops the picture, and shrinks what is left */
+    LightFieldParameters panel;
+    panel.layout = LightFieldLayout::Lenticular;
+    panel.sheet = {11.3, 0.17, 0.1, false, false, true, false};
+    for (const LightFieldParameters &parameters : {quilt, panel}) {
+        const PictureSize output{4 * 37, 3 * 61};
+        const std::vector<uint8_t> by_pixels = render(picture, output, parameters, KernelStyle::Pixels);
+        const std::vector<uint8_t> by_rows = render(picture, output, parameters, KernelStyle::Tiles);
+        size_t different = 0;
+        for (size_t i = 0; i < by_rows.size(); i++)
+            different += std::abs(by_rows[i] - by_pixels[i]) > 2;
+        EXPECT_LT(static_cast<double>(different) / static_cast<double>(by_rows.size()), 4e-3);
+    }
+}
+
 TEST(Renderer, the_same_point_looks_the_same_in_every_view)
 {
     /* A flat picture at the near end: each view shows it shifted by a whole number of pixels. */
