@@ -173,11 +173,13 @@ void install_test_properties(GObjectClass *klass)
                              "Pixels that a ball, which flies from side to side before the scene, moves from "
                              "plane to plane (negative: begins on the right); 0: there is no ball",
                              -1000.0, 1000.0, defaults.scene.motion, playing));
-    install(PROP_BREATHING,
-            g_param_spec_double(
-                "breathing", "Breathing",
-                "Magnification of the last plane less that of the first, about the picture's centre", -0.5,
-                0.5, defaults.scene.breathing, playing));
+    install(
+        PROP_BREATHING,
+        g_param_spec_double(
+            "breathing", "Breathing",
+            "Magnification of the last plane less that of the first, about the picture's centre; the true "
+            "depth is as the middle plane, planes / 2, has it",
+            -0.5, 0.5, defaults.scene.breathing, playing));
     install(PROP_JITTER,
             g_param_spec_double("jitter", "Jitter",
                                 "Root mean square of each plane's shift along x and y, in pixels", 0.0, 100.0,

@@ -85,14 +85,6 @@ def run_elements(scene, conditions, folder):
     return to_planes(read_rows(depth, shape, np.dtype('<u2'), 1)[..., 0]), read_rows(aif, shape, np.dtype('u1'), 3)
 
 
-def as_middle_plane(picture, breathing, interpolation):
-    """A picture at the magnification of the middle plane, onto which focalstackalign brings the others."""
-    height, width = picture.shape[:2]
-    zoom = 1 + breathing * (PLANES // 2 / (PLANES - 1) - 0.5)
-    matrix = np.array([[zoom, 0, (width - 1) / 2 * (1 - zoom)], [0, zoom, (height - 1) / 2 * (1 - zoom)]])
-    return cv2.warpAffine(picture, matrix, (width, height), flags=interpolation, borderMode=cv2.BORDER_REFLECT_101)
-
-
 def read_rows(path, shape, dtype, channels):
     """One raw video frame in GStreamer's default layout: each row is padded to a multiple of 4 bytes."""
     height, width = shape
@@ -106,12 +98,9 @@ def score_scene(scene, conditions):
         folder = pathlib.Path(name)
         u, image = run_elements(scene, conditions, folder)
         truth, known = scene.truth(folder)
-    known = as_middle_plane(known.astype(np.uint8), conditions.breathing, cv2.INTER_NEAREST) > 0
-    truth = as_middle_plane(truth, conditions.breathing, cv2.INTER_NEAREST)
     result = scores.depth_scores(u, truth, known, PLANES)
     if scene.view is not None:
-        view = as_middle_plane(scene.view, conditions.breathing, cv2.INTER_LANCZOS4)
-        result.update(scores.all_in_focus_scores(image, view))
+        result.update(scores.all_in_focus_scores(image, scene.view))
     return result
 
 

@@ -20,7 +20,8 @@ struct SweptCameraSettings {
     double blur_step = 2.0; /* mean change of the circle of confusion from plane to plane, pixels */
     SensorNoise noise;
     double motion = 0.0;    /* pixels a ball flies from plane to plane, 0: there is no ball */
-    double breathing = 0.0; /* magnification of the last plane minus that of the first */
+    double breathing = 0.0; /* magnification of the last plane minus that of the first; the middle
+                               plane, planes / 2, is seen as depth_map() has it */
     double jitter = 0.0;    /* root mean square of each plane's shift along x and y, pixels */
     uint64_t seed = 0;
 };
