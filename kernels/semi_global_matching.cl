@@ -4,7 +4,7 @@
  * Semi-global matching (Hirschmueller 2008) of a cost volume C over 8 paths, penalties damped where the guide changes:
  *
  *     L(p, z) = C(p, z) + min(L(q, z), L(q, z -+ 1) + P1 E(p, q), min_k L(q, k) + P2 E(p, q)) - min_k L(q, k)
- *     E(p, q) = exp(-|A(p) - A(q)|_1 / 15) + 0.01,  P1 = .3 + .4 t,  P2 = 2
+ *     E(p, q) = exp(-|A(p) - A(q)|_1 / 15) + 0.01,  P1 = .4 + .4 t,  P2 = 2
  *
  * q is the cell before p on the path. Down and up go two work-items, row after row, each with three paths at once; along
  * rows go as many as there are blocks of 16 rows. C, E, L and their totals are shorts in 1/COST_ONE: C stays below 1.5,
@@ -24,7 +24,7 @@
 /* P1 and P2 times E, which `edge` holds; P1 in 1/64. */
 #define SMALL_STEP(edge) as_short16(as_ushort16(edge) * p1 >> (ushort)6)
 #define JUMP(edge) ((edge) + (edge))
-#define P1_OF(noise) (ushort)(64.0f * (0.3f + 0.4f * noise->t) + 0.5f)
+#define P1_OF(noise) (ushort)(64.0f * (0.4f + 0.4f * noise->t) + 0.5f)
 
 /* edges[0..3]: E to the cell above, above left, above right, left. The sides of the guide must be mirrored.
  * Work-items (1, low height). */
@@ -217,13 +217,16 @@ __kernel void follow_rows(__global const short *cost, __global const short *edge
     }
 }
 
-/* u: the least of the three totals together, with a parabola through its neighbours; c = mean_z C, its ends mirrored.
+/* u: the least of the three totals together, and where between the planes: with v the vertex of a parabola through its
+ * neighbours, v (1 + k) / (1 + 2 k |v|), k = 2 - 1.4 t, since the totals come to a point rather than to a parabola's foot
+ * (two straight lines would be k = 1) and v lies too near to the plane. c = mean_z C, its ends mirrored.
  * Work-items (1, low height). */
 __kernel void decide(__global const short *total_down, __global const short *total_up,
                      __global const short *total_along, __global const short *cost, __global float *u,
-                     __global float *confidence, int width, int stride)
+                     __global float *confidence, __global const Noise *noise, int width, int stride)
 {
     const size_t row = get_global_id(1) * stride + SIDE, picture = get_global_size(1) * stride;
+    const float pointedness = 2.0f - 1.4f * noise->t;
     for (int x = 0; x < width; x += 8) {
         short8 sums[PLANES], cost_sum = 0, least = SHRT_MAX, best = 0;
         UNROLL_PLANES
@@ -248,9 +251,11 @@ __kernel void decide(__global const short *total_down, __global const short *tot
         const float8 slope = convert_float8(convert_int8(before) - convert_int8(after));
         const float8 curvature =
             convert_float8(convert_int8(before) - 2 * convert_int8(here) + convert_int8(after));
-        const float8 offset = curvature > 0.0f ? 0.5f * slope / max(curvature, 1.0f) + convert_float8(middle - best)
+        const float8 vertex = curvature > 0.0f ? 0.5f * slope / max(curvature, 1.0f) + convert_float8(middle - best)
                                                : (float8)0.0f;
-        position = clamp(position + clamp(offset, -0.5f, 0.5f), 0.0f, PLANES - 1.0f);
+        const float8 offset = clamp(vertex, -0.5f, 0.5f);
+        const float8 between = offset * (1.0f + pointedness) / (1.0f + 2.0f * pointedness * fabs(offset));
+        position = clamp(position + between, 0.0f, PLANES - 1.0f);
 #endif
         CELLS(u + row + x) = position;
         CELLS(confidence + row + x) = clamp(convert_float8(cost_sum) * (4.0f / COST_ONE / PLANES), 0.0f, 1.0f);

@@ -26,8 +26,8 @@ void SemiGlobalMatching::run(const cl::Buffer &cost, const cl::Buffer &guide, co
                low_.height, low_.stride);
     queue_.run(follow_rows_, {1, static_cast<size_t>(low_.height + 15) / 16}, cost, edges_, noise.noise(),
                total_along_, low_.width, low_.height, low_.stride);
-    queue_.run(decide_, low_.rows(), total_down_, total_up_, total_along_, cost, u_, confidence_, low_.width,
-               low_.stride);
+    queue_.run(decide_, low_.rows(), total_down_, total_up_, total_along_, cost, u_, confidence_,
+               noise.noise(), low_.width, low_.stride);
 }
 
 } // namespace dff

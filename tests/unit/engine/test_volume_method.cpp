@@ -117,6 +117,12 @@ TEST(VolumeMethod, depth_is_finer_than_a_plane)
     EXPECT_LT(error_of(compute(two_halves(shape, 2.5f, 4.5f)), shape, 2.5f, 4.5f), 0.2);
 }
 
+TEST(VolumeMethod, depth_is_not_drawn_to_the_planes)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 8};
+    EXPECT_LT(error_of(compute(two_halves(shape, 2.25f, 4.7f)), shape, 2.25f, 4.7f), 0.08);
+}
+
 TEST(VolumeMethod, noise_moves_surfaces_by_less_than_half_a_plane)
 {
     const StackShape shape{PixelFormat::Gray8, 160, 120, 8};

@@ -237,7 +237,7 @@ void VolumeStages::expect_guided_filter_and_matching()
     const Volume cost = read_shorts(cost_stage.cost(), shape.planes, 1024);
     expect_alike(filtered, twin::guided_filter(cost, guide, noise.t), 0.01f);
 
-    expect_mostly(read(matching.u(), 1), twin::decide(twin::match(filtered, guide, noise.t)), 0.05f);
+    expect_mostly(read(matching.u(), 1), twin::decide(twin::match(filtered, guide, noise.t), noise.t), 0.05f);
     expect_alike(read(matching.confidence(), 1), twin::mean_over_planes(filtered), 4e-3f);
 }
 

@@ -34,7 +34,7 @@ Colours blend(const Colours &small, const Volume &u, float t);
 Colours denoise(const Colours &guide, float sigma, unsigned scale);
 Volume guided_filter(const Volume &cost, const Colours &guide, float t);
 Volume match(const Volume &cost, const Colours &guide, float t);
-Volume decide(const Volume &total);
+Volume decide(const Volume &total, float t);
 Volume mean_over_planes(const Volume &cost);
 Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence);
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);

@@ -188,11 +188,11 @@ Volume match(const Volume &cost, const Colours &guide, float t)
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++)
             if (dx != 0 || dy != 0)
-                follow(cost, guide, {dx, dy}, 0.3f + 0.4f * t, 2.0f, total);
+                follow(cost, guide, {dx, dy}, 0.4f + 0.4f * t, 2.0f, total);
     return total;
 }
 
-Volume decide(const Volume &total)
+Volume decide(const Volume &total, float t)
 {
     Volume u(total.width, total.height, 1);
     const int last = static_cast<int>(total.planes) - 1;
@@ -210,8 +210,10 @@ Volume decide(const Volume &total)
                 if (curvature > 1e-12f)
                     offset = 0.5f * (before - after) / curvature + static_cast<float>(middle - best);
             }
-            u.at(x, y) = std::clamp(static_cast<float>(best) + std::clamp(offset, -0.5f, 0.5f), 0.0f,
-                                    static_cast<float>(last));
+            offset = std::clamp(offset, -0.5f, 0.5f);
+            const float pointedness = 2.0f - 1.4f * t;
+            offset *= (1.0f + pointedness) / (1.0f + 2.0f * pointedness * std::abs(offset));
+            u.at(x, y) = std::clamp(static_cast<float>(best) + offset, 0.0f, static_cast<float>(last));
         }
     return u;
 }
