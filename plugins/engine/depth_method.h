@@ -19,10 +19,10 @@ public:
 
     virtual ~DepthMethod() = default;
 
-    /* Queues all stages. */
-    virtual void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) = 0;
+    /* Queues all stages. `depth` takes ushort[height][width], 0 everywhere if nothing could be told. */
+    virtual void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+                     const cl::Buffer &depth) = 0;
 
-    virtual const cl::Buffer &depth() const = 0;      /* ushort; 0 everywhere if nothing could be told */
     virtual const cl::Buffer &sparse() const = 0;     /* ushort, 0 where unknown */
     virtual const cl::Buffer &confidence() const = 0; /* uchar: 255 c */
     virtual const cl::Buffer &motion() const = 0;     /* uchar: 255 where it moved */

@@ -67,19 +67,22 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
     cl_ushort first = DepthScale::no_value;
     cl_float residual = 0.0f;
     translate_errors(*device_, [&] {
+        const cl::Buffer depth = depth_for(outputs.depth);
         stack_.assign(stack);
         method_->run(stack_, coder_,
                      {.sparse = outputs.sparse.pixels != nullptr,
                       .confidence = outputs.confidence.pixels != nullptr,
-                      .motion = outputs.motion.pixels != nullptr});
-        read(method_->depth(), sizeof(cl_ushort), outputs.depth);
+                      .motion = outputs.motion.pixels != nullptr},
+                     depth);
+        if (depth() == depth_())
+            read(depth, sizeof(cl_ushort), outputs.depth);
         if (outputs.sparse.pixels)
             read(method_->sparse(), sizeof(cl_ushort), outputs.sparse);
         if (outputs.confidence.pixels)
             read(method_->confidence(), sizeof(cl_uchar), outputs.confidence);
         if (outputs.motion.pixels)
             read(method_->motion(), sizeof(cl_uchar), outputs.motion);
-        queue_.commands().enqueueReadBuffer(method_->depth(), CL_FALSE, 0, sizeof first, &first);
+        queue_.commands().enqueueReadBuffer(depth, CL_FALSE, 0, sizeof first, &first);
         if (method_->residual())
             queue_.commands().enqueueReadBuffer(*method_->residual(), CL_FALSE, 0, sizeof residual,
                                                 &residual);
@@ -88,6 +91,17 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
     });
     residual_ = method_->residual() ? std::optional(residual) : std::nullopt;
     return first != DepthScale::no_value;
+}
+
+/* The output itself where the device can write it: on a CPU, without padding between rows. */
+cl::Buffer FocusEngine::depth_for(const OutputPicture &output)
+{
+    const size_t row_bytes = shape_.width * sizeof(cl_ushort), bytes = row_bytes * shape_.height;
+    if (device_->is_cpu() && output.pixels && output.stride == row_bytes)
+        return {device_->context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, output.pixels};
+    if (!depth_())
+        depth_ = queue_.allocate(bytes);
+    return depth_;
 }
 
 void FocusEngine::read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output)

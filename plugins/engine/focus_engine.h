@@ -46,6 +46,7 @@ public:
     std::optional<float> residual() const { return residual_; }
 
 private:
+    cl::Buffer depth_for(const OutputPicture &output);
     void read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output);
 
     std::shared_ptr<Device> device_;
@@ -54,6 +55,7 @@ private:
     StackBuffer stack_;
     DepthCoder coder_;
     std::unique_ptr<DepthMethod> method_;
+    cl::Buffer depth_; /* where it is not computed in place */
     StageTimes times_;
     std::optional<float> residual_;
 };

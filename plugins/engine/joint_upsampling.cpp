@@ -5,8 +5,7 @@
 namespace dff {
 
 JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low)
-    : queue_(queue), shape_(shape), low_(low), channels_(colour_channels(shape.format)),
-      depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
+    : queue_(queue), shape_(shape), low_(low), channels_(colour_channels(shape.format))
 {
     const Program program(queue.device(), "joint_upsampling",
                           colour_options(shape.format) + " -DSCALE=" + std::to_string(low.scale));
@@ -16,12 +15,13 @@ JointUpsampling::JointUpsampling(CommandQueue &queue, const StackShape &shape, c
 }
 
 void JointUpsampling::run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
-                          const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder)
+                          const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder,
+                          const cl::Buffer &depth)
 {
     queue_.begin_stage("upsample");
     queue_.run(upsample_, {1, static_cast<size_t>(low_.height) + 2}, low_u, guide.nearer(), guide.guide(),
                noise.noise(), cost.evidence(), stack.bytes(), stack.layout(), channels_, coder.codes(),
-               cl_int{coder.is_linear()}, depth_, static_cast<cl_int>(shape_.planes),
+               cl_int{coder.is_linear()}, depth, static_cast<cl_int>(shape_.planes),
                static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), low_.height,
                low_.stride);
 }
@@ -35,12 +35,12 @@ void JointUpsampling::run_confidence(const SemiGlobalMatching &matching, const C
                static_cast<cl_int>(shape_.width), low_.height, low_.stride);
 }
 
-void JointUpsampling::run_sparse(const DepthFill &fill, const ZEntropy *motion)
+void JointUpsampling::run_sparse(const cl::Buffer &depth, const DepthFill &fill, const ZEntropy *motion)
 {
     if (!sparse_())
         sparse_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
     queue_.begin_stage("sparse-depth");
-    queue_.run(keep_confident_, {1, shape_.height}, depth_, confidence_,
+    queue_.run(keep_confident_, {1, shape_.height}, depth, confidence_,
                motion ? motion->moved() : confidence_, cl_int{motion != nullptr}, fill.high_confidence(),
                sparse_, static_cast<cl_int>(shape_.width));
 }

@@ -14,15 +14,15 @@ class JointUpsampling {
 public:
     JointUpsampling(CommandQueue &queue, const StackShape &shape, const LowShape &low);
 
-    /* `guide` at the low `u`. */
+    /* `guide` at the low `u`; depth becomes ushort[height][width], 0 without evidence. */
     void run(const cl::Buffer &low_u, const GuideImage &guide, const CostVolume &cost,
-             const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder);
+             const NoiseEstimate &noise, const StackBuffer &stack, const DepthCoder &coder,
+             const cl::Buffer &depth);
     void run_confidence(const SemiGlobalMatching &matching, const CostVolume &cost);
 
-    /* After both; leaves pixels that moved out, where `motion` is given. */
-    void run_sparse(const DepthFill &fill, const ZEntropy *motion);
+    /* After both, from their `depth`; leaves pixels that moved out, where `motion` is given. */
+    void run_sparse(const cl::Buffer &depth, const DepthFill &fill, const ZEntropy *motion);
 
-    const cl::Buffer &depth() const { return depth_; } /* ushort[height][width]; 0 without evidence */
     const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
     const cl::Buffer &sparse() const { return sparse_; }         /* ushort[height][width], 0 where unknown */
 
@@ -32,7 +32,7 @@ private:
     LowShape low_;
     cl_int4 channels_;
     cl::Kernel upsample_, upsample_confidence_, keep_confident_;
-    cl::Buffer depth_, confidence_, sparse_;
+    cl::Buffer confidence_, sparse_;
 };
 
 } // namespace dff

@@ -9,12 +9,12 @@ PaperMethod::PaperMethod(CommandQueue &queue, const StackShape &shape, const Dep
       focus_(queue, shape, parameters.levels), entropy_(queue, shape, parameters.entropy_bits),
       sparse_(queue, shape, parameters.tolerance),
       reference_(queue, shape, parameters.grid.sigma_chroma != 0), grid_(queue, shape, parameters.grid),
-      blur_(queue, shape.width, shape.height, GaussianBlur::taps_for(parameters.grid.sigma_xy)),
-      depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
+      blur_(queue, shape.width, shape.height, GaussianBlur::taps_for(parameters.grid.sigma_xy))
 {
 }
 
-void PaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted)
+void PaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+                      const cl::Buffer &depth)
 {
     luma_.run(stack);
     focus_.run(luma_);
@@ -26,7 +26,7 @@ void PaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted 
     blur_.run(grid_.u());
 
     queue_.begin_stage("code");
-    coder.code_positions(grid_.u(), depth_);
+    coder.code_positions(grid_.u(), depth);
     if (wanted.sparse) {
         if (!sparse_depth_())
             sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));

@@ -13,9 +13,9 @@ class PaperMethod : public DepthMethod {
 public:
     PaperMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters);
 
-    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) override;
+    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+             const cl::Buffer &depth) override;
 
-    const cl::Buffer &depth() const override { return depth_; }
     const cl::Buffer &sparse() const override { return sparse_depth_; }
     const cl::Buffer &confidence() const override { return sparse_.confidence(); }
     const cl::Buffer &motion() const override { return entropy_.moved(); }
@@ -31,7 +31,7 @@ private:
     ReferenceImage reference_;
     BilateralGrid grid_;
     GaussianBlur blur_;
-    cl::Buffer depth_, sparse_depth_;
+    cl::Buffer sparse_depth_;
 };
 
 } // namespace dff

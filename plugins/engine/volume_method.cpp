@@ -26,7 +26,8 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
            FocusVolume::scratch_bytes(shape, low) + pixels * (2 * sizeof(cl_ushort) + 1) + motion;
 }
 
-void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted)
+void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+                       const cl::Buffer &depth)
 {
     noise_.run(stack);
     small_.run(stack);
@@ -37,7 +38,7 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     matching_.run(filter_.filtered(), guide_.guide(), noise_);
     fill_.run(matching_);
     guide_.run_at(matching_.u(), small_, noise_);
-    upsampling_.run(matching_.u(), guide_, cost_, noise_, stack, coder);
+    upsampling_.run(matching_.u(), guide_, cost_, noise_, stack, coder, depth);
 
     const bool mask_motion = wanted.sparse && parameters_.motion_mask;
     if (wanted.motion || mask_motion)
@@ -45,7 +46,7 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     if (wanted.confidence || wanted.sparse)
         upsampling_.run_confidence(matching_, cost_);
     if (wanted.sparse)
-        upsampling_.run_sparse(fill_, mask_motion ? entropy_.get() : nullptr);
+        upsampling_.run_sparse(depth, fill_, mask_motion ? entropy_.get() : nullptr);
 }
 
 void VolumeMethod::run_motion(const StackBuffer &stack)

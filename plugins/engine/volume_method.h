@@ -18,9 +18,9 @@ public:
     /* Bytes of device memory it takes beside the stack, with all maps wanted. */
     static uint64_t memory(const StackShape &shape, const DepthParameters &parameters);
 
-    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) override;
+    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+             const cl::Buffer &depth) override;
 
-    const cl::Buffer &depth() const override { return upsampling_.depth(); }
     const cl::Buffer &sparse() const override { return upsampling_.sparse(); }
     const cl::Buffer &confidence() const override { return upsampling_.confidence(); }
     const cl::Buffer &motion() const override { return entropy_->moved(); }

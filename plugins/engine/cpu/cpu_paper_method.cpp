@@ -8,17 +8,17 @@ CpuPaperMethod::CpuPaperMethod(CommandQueue &queue, const StackShape &shape,
                                const DepthParameters &parameters)
     : queue_(queue), shape_(shape), motion_mask_(parameters.motion_mask), luma_(queue, shape),
       focus_(queue, shape, parameters.levels, parameters.tolerance, parameters.entropy_bits),
-      grid_(queue, shape.width, shape.height, parameters.grid), slice_(queue, shape, grid_),
-      depth_(queue.allocate(size_t{shape.width} * shape.height * sizeof(cl_ushort)))
+      grid_(queue, shape.width, shape.height, parameters.grid), slice_(queue, shape, grid_)
 {
 }
 
-void CpuPaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted)
+void CpuPaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+                         const cl::Buffer &depth)
 {
     luma_.run(stack);
     focus_.run(luma_, motion_mask_, wanted.confidence);
     grid_.run(focus_.planes(), focus_.mean());
-    slice_.run(grid_, focus_.mean(), coder, depth_);
+    slice_.run(grid_, focus_.mean(), coder, depth);
     if (wanted.sparse) {
         if (!sparse_depth_())
             sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));

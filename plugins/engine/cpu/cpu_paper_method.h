@@ -15,9 +15,9 @@ class CpuPaperMethod : public DepthMethod {
 public:
     CpuPaperMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters);
 
-    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted) override;
+    void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
+             const cl::Buffer &depth) override;
 
-    const cl::Buffer &depth() const override { return depth_; }
     const cl::Buffer &sparse() const override { return sparse_depth_; }
     const cl::Buffer &confidence() const override { return focus_.confidence(); }
     const cl::Buffer &motion() const override { return focus_.moved(); }
@@ -31,7 +31,7 @@ private:
     FocusTiles focus_;
     LumaGrid grid_;
     DepthSlice slice_;
-    cl::Buffer depth_, sparse_depth_;
+    cl::Buffer sparse_depth_;
 };
 
 } // namespace dff

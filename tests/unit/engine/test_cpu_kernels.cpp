@@ -218,7 +218,8 @@ TEST(CpuKernels, the_first_start_agrees_with_its_twin)
 TEST(CpuKernels, a_grid_goes_on_from_the_last_solution_where_that_is_better)
 {
     const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
-    Stages stages(smooth_stack(shape));
+    const TestStack stack = smooth_stack(shape); /* used in place */
+    Stages stages(stack);
     stages.focus.run(stages.luma, false, false);
     LumaGrid grid(stages.queue, 150, 101, {16, 16, 0, 0.1f, 6});
     const auto residual_of_run = [&] {

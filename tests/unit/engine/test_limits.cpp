@@ -90,7 +90,8 @@ TEST(Limits, volume_states_the_memory_it_takes)
         const uint64_t before = queue.allocated();
         VolumeMethod method(queue, shape, parameters);
         buffer.assign(stack.view());
-        method.run(buffer, coder, {.sparse = true, .confidence = true, .motion = true});
+        const cl::Buffer depth = queue.allocate(size_t{shape.width} * shape.height * sizeof(uint16_t));
+        method.run(buffer, coder, {.sparse = true, .confidence = true, .motion = true}, depth);
         queue.finish();
         const auto taken = static_cast<double>(queue.allocated() - before);
         EXPECT_NEAR(static_cast<double>(VolumeMethod::memory(shape, parameters)), taken, 0.03 * taken);

@@ -48,7 +48,8 @@ protected:
           noise_stage(queue, shape, low.scale), small_stage(queue, shape, low),
           focus_stage(queue, shape, low), cost_stage(queue, low), guide_stage(queue, low),
           filter_stage(queue, low), matching(queue, low), fill_stage(queue, low),
-          upsampling(queue, shape, low)
+          upsampling(queue, shape, low),
+          depth_map(queue.allocate(size_t{shape.width} * shape.height * sizeof(uint16_t)))
     {
         buffer.assign(stack.view());
         noise_stage.run(buffer);
@@ -153,6 +154,7 @@ protected:
     SemiGlobalMatching matching;
     DepthFill fill_stage;
     JointUpsampling upsampling;
+    cl::Buffer depth_map;
     twin::Noise noise;
 };
 
@@ -251,7 +253,7 @@ void VolumeStages::expect_fill_and_upsampling()
     expect_alike(filled, twin::fill(u, confidence, guide, high), 0.05f);
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
-    upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder);
+    upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);
     if (!is_interleaved(shape.format) && shape.format != PixelFormat::Gray8)
         return; /* its pixels' colours are what the small planes' are: tried above */
     twin::Colours planes{Volume(shape.width, shape.height, shape.planes),
@@ -267,7 +269,7 @@ void VolumeStages::expect_fill_and_upsampling()
                             ? stack.sample(0, x, y, z)
                             : stack.sample(0, x * channels.s[0] + channels.s[c + 1], y, z);
     const Volume expected = twin::upsample(filled, read_guide(), planes, noise.t, low.scale);
-    const auto depth = read_back<uint16_t>(queue, upsampling.depth(), expected.values.size());
+    const auto depth = read_back<uint16_t>(queue, depth_map, expected.values.size());
     const DepthEncoder encoder = DepthEncoder::index(shape.planes);
     size_t other = 0;
     for (size_t i = 0; i < depth.size(); i++)
@@ -285,9 +287,9 @@ void VolumeStages::expect_confidence_and_sparse_depth()
     for (size_t i = 0; i < pixels; i++)
         ASSERT_NEAR(confidence[i], expected[i], 1) << i % shape.width << "," << i / shape.width;
 
-    const auto depth = read_back<uint16_t>(queue, upsampling.depth(), pixels);
+    const auto depth = read_back<uint16_t>(queue, depth_map, pixels);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
-    upsampling.run_sparse(fill_stage, nullptr);
+    upsampling.run_sparse(depth_map, fill_stage, nullptr);
     EXPECT_EQ(read_back<uint16_t>(queue, upsampling.sparse(), pixels),
               twin::keep_confident(depth, confidence, nullptr, high));
 
@@ -296,7 +298,7 @@ void VolumeStages::expect_confidence_and_sparse_depth()
     luma.run(buffer);
     motion.run(luma);
     const auto moved = read_back<uint8_t>(queue, motion.moved(), pixels);
-    upsampling.run_sparse(fill_stage, &motion);
+    upsampling.run_sparse(depth_map, fill_stage, &motion);
     EXPECT_EQ(read_back<uint16_t>(queue, upsampling.sparse(), pixels),
               twin::keep_confident(depth, confidence, &moved, high));
 }
