@@ -16,6 +16,8 @@
  * and the conjugate gradient needs no preconditioner: it takes the steps that Jacobi's would. Its two dot products a
  * step are taken together (Chronopoulos and Gear 1989), which leaves two kernels a step.
  */
+#include "lanes32.cl"
+
 #define CENTRE_WEIGHT 10.0f
 #define EPSILON 1e-6f
 
@@ -69,12 +71,16 @@ inline int first_cell(void)
     return ((int)get_group_id(0) + 1) * ROW;
 }
 
-/* The part of the picture under a column of the grid. */
+/* The part of the picture under a column of the grid, copied by 16 pixels of a row after the other: steps of luma, and
+ * planes. What fills the last vector counts nowhere. */
+#define PARTS ((SIGMA_XY + 15) / 16)
+#define AREA_VECTORS ((PARTS * SIGMA_XY + 3) / 4)
+#define AHEAD 256   /* columns asked for ahead */
+#define OUTSIDE 255 /* not a step of luma, whose least size is 4 */
 typedef struct {
-    int left, right, top, bottom;
+    uchar64 steps[AREA_VECTORS], planes[AREA_VECTORS];
+    int first, last; /* steps among them */
 } Area;
-
-#define LANE_16 ((short16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 
 inline uchar lowest(uchar16 v)
 {
@@ -84,51 +90,59 @@ inline uchar lowest(uchar16 v)
     return min(c.lo, c.hi);
 }
 
-/* The steps of luma between which an area lies. */
-inline int2 steps_of(__global const uchar *luma, Area area, int width)
+inline void load_area(__global const uchar *sparse, __global const uchar *luma, int left, int top, int width, int height,
+                      Area *area)
 {
-    uchar16 darkest = 255, brightest = 0;
-    for (int x = area.left; x < area.right; x += 16)
-        for (int y = area.top; y < area.bottom; y++) {
-            const uchar16 pixels = *(__global const lanes8 *)(luma + (ulong)y * width + min(x, width - 16));
-            darkest = min(darkest, pixels);
-            brightest = max(brightest, pixels);
+    const int right = min(left + SIGMA_XY, width), bottom = min(top + SIGMA_XY, height);
+    uchar *steps = (uchar *)area->steps, *planes = (uchar *)area->planes;
+    uchar16 least = OUTSIDE, most = 0;
+    for (int i = 0; i < AREA_VECTORS; i++)
+        area->steps[i] = OUTSIDE;
+    for (int x = left; x < right; x += 16) {
+        const int first = min(x, width - 16); /* at the right border the lanes before come along */
+        const char16 column = convert_char16(LANE) + (char)(first - x);
+        const uchar16 outside = as_uchar16(column < (char)0 || column >= (char)min(right - x, 16));
+        for (int y = top; y < bottom; y++, steps += 16, planes += 16) {
+            const ulong pixel = (ulong)y * width + first;
+            PREFETCH(luma + pixel + AHEAD);
+            PREFETCH(sparse + pixel + AHEAD);
+            const uchar16 step = *(__global const lanes8 *)(luma + pixel) / (uchar16)SIGMA_LUMA;
+            *(lanes8 *)steps = step | outside;
+            *(lanes8 *)planes = *(__global const lanes8 *)(sparse + pixel);
+            least = min(least, step | outside);
+            most = max(most, step & ~outside);
         }
-    return (int2)(lowest(darkest), 255 - lowest(~brightest)) / SIGMA_LUMA;
+    }
+    area->first = lowest(least);
+    area->last = 255 - lowest(~most);
 }
 
-inline float sum_of_shorts(ushort16 v)
+inline float sum_of_shorts(ushort32 v)
 {
-    const uint8 a = convert_uint8(v.lo) + convert_uint8(v.hi);
-    const uint4 b = a.lo + a.hi;
-    const uint2 c = b.lo + b.hi;
-    return (float)(c.lo + c.hi);
+    const uint16 a = (as_uint16(v) & 65535u) + (as_uint16(v) >> 16);
+    const uint8 b = a.lo + a.hi;
+    const uint4 c = b.lo + b.hi;
+    const uint2 d = c.lo + c.hi;
+    return (float)(d.lo + d.hi);
+}
+
+inline ushort32 sum_bytes(uchar64 v)
+{
+    return even_bytes(as_ushort32(v)) + odd_bytes(as_ushort32(v));
 }
 
 /* Pixels of an area in a step of luma, known ones, and the sum of their planes. */
-inline float3 count_step(__global const uchar *sparse, __global const uchar *luma, Area area, int width, short darkest,
-                         short brightest)
+inline float3 count_step(const Area *area, uchar step)
 {
-    float3 count = 0.0f;
-    for (int x = area.left; x < area.right; x += 16) {
-        const int first = min(x, width - 16); /* at the right border the lanes before come along */
-        const short16 column = LANE_16 + (short)(first - x);
-        const short16 inside = column >= (short)0 && column < (short)(area.right - x);
-        short16 pixels = 0, known = 0;
-        ushort16 planes = 0;
-        for (int y = area.top; y < area.bottom; y++) {
-            const ulong pixel = (ulong)y * width + first;
-            const short16 here = convert_short16(*(__global const lanes8 *)(luma + pixel));
-            const ushort16 plane = convert_ushort16(*(__global const lanes8 *)(sparse + pixel));
-            const short16 counts = (here >= darkest) & (here < brightest) & inside;
-            const short16 tells = counts & (plane != (ushort)UNKNOWN_PLANE);
-            pixels -= counts; /* true is -1 */
-            known -= tells;
-            planes += plane & as_ushort16(tells);
-        }
-        count += (float3)(sum_of_shorts(as_ushort16(pixels)), sum_of_shorts(as_ushort16(known)), sum_of_shorts(planes));
+    ushort32 pixels = 0, known = 0, planes = 0;
+    for (int i = 0; i < AREA_VECTORS; i++) {
+        const uchar64 counts = __builtin_astype(area->steps[i] == step, uchar64);
+        const uchar64 tells = counts & __builtin_astype(area->planes[i] != (uchar)UNKNOWN_PLANE, uchar64);
+        pixels += sum_bytes(counts & (uchar)1);
+        known += sum_bytes(tells & (uchar)1);
+        planes += sum_bytes(tells & area->planes[i]);
     }
-    return count;
+    return (float3)(sum_of_shorts(pixels), sum_of_shorts(known), sum_of_shorts(planes));
 }
 
 /* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
@@ -140,13 +154,12 @@ __kernel void splat_rows(__global const uchar *sparse, __global const uchar *lum
     float2 sums = 0.0f;
     int cell = first_cell() + COLUMN + 1;
     for (int left = 0; left < width; left += SIGMA_XY, cell += COLUMN) {
-        const Area area = {left, min(left + SIGMA_XY, width), top, min(top + SIGMA_XY, height)};
-        const int2 steps = steps_of(luma, area, width);
+        Area area;
+        load_area(sparse, luma, left, top, width, height, &area);
         for (int step = 0; step < COLUMN - 1; step++) {
             float3 count = 0.0f;
-            if (step >= steps.x && step <= steps.y)
-                count = count_step(sparse, luma, area, width, (short)(step * SIGMA_LUMA),
-                                   (short)((step + 1) * SIGMA_LUMA));
+            if (step >= area.first && step <= area.last)
+                count = count_step(&area, (uchar)step);
             mass[cell + step] = count.x;
             weight[cell + step] = count.y;
             target[cell + step] = count.z;

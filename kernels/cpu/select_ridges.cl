@@ -4,18 +4,35 @@
  * The selection of sparse_depth.cl for CPUs, on what focus_tiles.cl leaves: maxima are the upper halves of floats,
  * which order like integers and halve by taking HALVE away.
  */
-#define RIDGE_RADIUS 3
-#define HALVE 128
-#define STRIP 36 /* rows a work-item */
-#define SEGMENT 256 /* columns a work-item; the last one has the rest too, so that none has less than 16 */
+#include "lanes32.cl"
 
-/* Greatest of 7 neighbours in a row, for 16 pixels. */
-inline ushort16 row_maximum(__global const ushort *peak)
+#define RIDGE_RADIUS 3
+#define HALVE 128   /* takes 1 from the exponent */
+#define AHEAD 8     /* rows asked for ahead */
+#define STRIP 36    /* rows a work-item */
+#define SEGMENT 256 /* columns a work-item; the last one has the rest too, so that none has less than 64 */
+
+inline ushort32 max32(ushort32 a, ushort32 b)
 {
-    ushort16 highest = *(__global const lanes16 *)peak;
+    return a > b ? a : b;
+}
+
+/* Greatest of 7 neighbours in a row, for 32 pixels. */
+inline ushort32 row_maximum(__global const ushort *peak)
+{
+    ushort32 highest = *(__global const lanes32 *)peak;
     for (int i = 1; i <= RIDGE_RADIUS; i++)
-        highest = max(highest, max(*(__global const lanes16 *)(peak - i), *(__global const lanes16 *)(peak + i)));
+        highest = max32(highest,
+                        max32(*(__global const lanes32 *)(peak - i), *(__global const lanes32 *)(peak + i)));
     return highest;
+}
+
+/* Which of 32 pixels are ridges: 255, else 0. */
+inline uchar32 is_ridge(ushort32 peak, ushort32 most, ushort mean)
+{
+    const ushort32 ridge =
+        as_ushort32(peak > (ushort)0) & as_ushort32(peak >= mean) & as_ushort32(peak + (ushort)HALVE >= most);
+    return __builtin_convertvector(ridge, uchar32);
 }
 
 /* One work-item a segment of a strip. `peak` and `peak_plane` have `stride` pixels a row with 16 columns of 0 or more
@@ -35,22 +52,25 @@ __kernel void select_ridges(__global const ushort *peak, __global const uchar *p
     const ushort mean = (ushort)(as_uint(total / ((float)width * height)) >> 16);
 
     for (int y = top - RIDGE_RADIUS; y < bottom + RIDGE_RADIUS; y++)
-        for (int x = left; x < right; x += 16)
-            *(lanes16 *)(highest + (y - top + RIDGE_RADIUS) * 2 * SEGMENT + x - left) =
-                y < 0 || y >= height ? (ushort16)0 : row_maximum(peak + (ulong)y * stride + x);
+        for (int x = left; x < right; x += 32) {
+            const int from = min(x, right - 32); /* the last lanes overlap the ones before */
+            PREFETCH(peak + (ulong)(y + AHEAD) * stride + from);
+            *(lanes32 *)(highest + (y - top + RIDGE_RADIUS) * 2 * SEGMENT + from - left) =
+                y < 0 || y >= height ? (ushort32)0 : row_maximum(peak + (ulong)y * stride + from);
+        }
 
     for (int y = top; y < bottom; y++)
-        for (int x = left; x < right; x += 16) {
-            const int from = min(x, right - 16); /* the last lanes overlap the ones before */
-            const ushort16 p = *(__global const lanes16 *)(peak + (ulong)y * stride + from);
-            const uchar16 plane = *(__global const lanes8 *)(peak_plane + (ulong)y * stride + from);
+        for (int x = left; x < right; x += 32) {
+            const int from = min(x, right - 32);
             const ushort *window = highest + (y - top) * 2 * SEGMENT + from - left;
-            ushort16 most = *(const lanes16 *)window;
+            ushort32 most = *(const lanes32 *)window;
             for (int j = 1; j <= 2 * RIDGE_RADIUS; j++)
-                most = max(most, *(const lanes16 *)(window + j * 2 * SEGMENT));
-            const char16 ridge = convert_char16(p > (ushort)0 && p >= mean && p + (ushort)HALVE >= most);
-            const ulong pixel = (ulong)y * width + from;
-            const uchar16 still = use_moved ? ~*(__global const lanes8 *)(moved + pixel) : (uchar16)255;
-            *(__global lanes8 *)(sparse + pixel) = plane | ~(as_uchar16(ridge) & still);
+                most = max32(most, *(const lanes32 *)(window + j * 2 * SEGMENT));
+            const ulong entry = (ulong)y * stride + from, pixel = (ulong)y * width + from;
+            PREFETCH(peak_plane + entry + AHEAD * stride);
+            PREFETCH(moved + pixel + AHEAD * width);
+            const uchar32 ridge = is_ridge(*(__global const lanes32 *)(peak + entry), most, mean);
+            const uchar32 still = use_moved ? ~*(__global const bytes32 *)(moved + pixel) : (uchar32)255;
+            *(__global bytes32 *)(sparse + pixel) = *(__global const bytes32 *)(peak_plane + entry) | ~(ridge & still);
         }
 }
