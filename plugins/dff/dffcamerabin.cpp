@@ -195,8 +195,12 @@ static void link_source(GstDffCameraBin *self)
     const bool stacks = gives_stacks(pad);
     if (!stacks)
         gst_element_link(state.mux, state.stacks);
-    if (!gst_element_link(state.source, stacks ? state.stacks : state.mux))
-        state.source_error = "it gives neither frames nor focal stacks";
+    if (!gst_element_link(state.source, stacks ? state.stacks : state.mux)) {
+        g_autoptr(GstCaps) caps = gst_pad_query_caps(pad, nullptr);
+        g_autofree gchar *text = gst_caps_to_string(caps);
+        state.source_error = "its caps \"" + std::string(text) +
+                             "\" are no frames or focal stacks of a format and size that dffdepth takes";
+    }
     gst_element_set_locked_state(state.mux, stacks); /* a mux without input has nothing to do */
 }
 

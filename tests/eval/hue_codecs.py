@@ -4,7 +4,7 @@
 """What H.264 and H.265 leave of depth in the colours of depthcolorize palette=hue.
 
     hue_codecs.py               the figures, as a table in Markdown
-    hue_codecs.py PICTURE.svg   and as a plot
+    hue_codecs.py PICTURE.svg   and as a plot, with Matplotlib
 
 The depth is the truth of a simulated scene in motion, with holes, 640x480 at 26 frames/s. Beside our colours stand those of
 Sonoda and Grunnet-Jepsen, "Depth image compression by colorization for Intel RealSense Depth Cameras" (rev. 1.0, 2020), with
@@ -135,8 +135,9 @@ def plot(rows, picture):
     matplotlib.use('svg')
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, 3, figsize=(12, 4))
-    for axis, column in zip(axes, ('median D', '95 % D', 'off by 1 D, %')):
+    figure, axes = plt.subplots(2, 3, figsize=(12, 8))
+    axes = axes.flat
+    for axis, column in zip(axes, ('median D', '95 % D', 'off by 1 D, %', 'median mm', '95 % mm', 'holes wrong, %')):
         for codec in CODECS:
             for colours, line in ((OurHue, '-o'), (PublishedHue, ':x')):
                 points = [(rate, row[column]) for c, k, rate, row in rows if c == codec and k is colours]

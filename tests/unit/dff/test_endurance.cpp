@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "live_objects.h"
 #include "test_pipeline.h"
 
 #include <cstdio>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+using dff::is_sanitized;
+using dff::resident_kib;
 using dff::TestPipeline;
 
 namespace {
@@ -15,22 +16,6 @@ const std::string graph =
     " ! focalstackmux ! tee name=s  s. ! queue ! dffdepth name=d ! tee name=t  t. ! queue ! c.depth  "
     "s. ! queue ! c.stack  aifcompose name=c ! queue ! appsink name=aif sync=false max-buffers=4  "
     "t. ! queue ! appsink name=depth sync=false max-buffers=4";
-
-size_t resident_kib()
-{
-    size_t pages = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> pages >> resident;
-    return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE)) / 1024;
-}
-
-bool is_sanitized()
-{
-#ifdef __SANITIZE_ADDRESS__
-    return true; /* its quarantine grows */
-#else
-    return false;
-#endif
-}
 
 } // namespace
 
