@@ -52,9 +52,14 @@ AravisCamera::AravisCamera(const std::string &name) : camera_(open_camera(name))
         g_signal_connect(arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(lost), this);
 }
 
+/* The thread that tells that the camera is gone holds the device meanwhile. Were its reference the last, the
+ * device would end in that thread, and wait there for the end of the same thread. */
 AravisCamera::~AravisCamera()
 {
-    g_signal_handler_disconnect(arv_camera_get_device(camera_.get()), gone_signal_);
+    ArvDevice *device = arv_camera_get_device(camera_.get());
+    g_signal_handler_disconnect(device, gone_signal_);
+    for (int i = 0; i < 1000 && g_atomic_int_get(&G_OBJECT(device)->ref_count) > 1; i++)
+        g_usleep(1000);
 }
 
 void AravisCamera::on_gone(std::function<void()> gone)
@@ -100,13 +105,20 @@ FrameNumbering AravisCamera::numbering()
     return extended ? FrameNumbering::GigE64 : FrameNumbering::GigE16;
 }
 
-double AravisCamera::link_bits()
+double AravisCamera::told_link_bits()
 {
     if (has("GevLinkSpeed"))
         return static_cast<double>(get_integer("GevLinkSpeed")) * 1e6;
     if (has("DeviceLinkSpeed"))
         return static_cast<double>(get_integer("DeviceLinkSpeed")) * 8;
-    return arv_camera_is_gv_device(camera_.get()) ? 1e9 : 0;
+    return 0;
+}
+
+double AravisCamera::link_bits()
+{
+    const double told = told_link_bits();
+    const double usual = arv_camera_is_gv_device(camera_.get()) ? 1e9 : 0;
+    return told > 0 ? told : usual;
 }
 
 unsigned AravisCamera::packet()

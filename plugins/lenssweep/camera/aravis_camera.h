@@ -53,6 +53,9 @@ public:
     /* Bits a second of its link; 0 if it is not known. GigE Vision without a word on it: 1 Gbit/s. */
     double link_bits();
 
+    /* What the camera itself says of that; 0 if it does not. */
+    double told_link_bits();
+
     /* Bytes of an IP packet; 0 if it is no GigE Vision camera. */
     unsigned packet();
 

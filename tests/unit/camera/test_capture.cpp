@@ -106,6 +106,29 @@ TEST(SweepCapture, settings_change_and_sweeps_go_on_rising)
     EXPECT_GT(last, before);
 }
 
+/* It would wait for its own end: Aravis tells it in the thread that asks the camera whether it is there. */
+TEST(AravisCamera, is_not_freed_by_the_thread_that_tells_that_it_is_gone)
+{
+    auto camera = std::make_unique<dff::AravisCamera>("Fake_1");
+    ArvDevice *device = arv_camera_get_device(camera->handle());
+    std::atomic<bool> telling = false;
+    const auto busy = +[](ArvDevice *, std::atomic<bool> *told) {
+        *told = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    };
+    g_signal_connect(device, "control-lost", G_CALLBACK(busy), &telling);
+    std::thread::id freed_by;
+    const auto freed =
+        +[](gpointer id, GObject *) { *static_cast<std::thread::id *>(id) = std::this_thread::get_id(); };
+    g_object_weak_ref(G_OBJECT(device), freed, &freed_by);
+    std::thread heartbeat([&] { g_signal_emit_by_name(device, "control-lost"); });
+    while (!telling)
+        std::this_thread::yield();
+    camera.reset();
+    heartbeat.join();
+    EXPECT_EQ(freed_by, std::this_thread::get_id());
+}
+
 TEST(SweepCapture, starts_and_stops_as_often_as_wanted)
 {
     dff::SweepCapture capture(simulated(40));
