@@ -3,6 +3,7 @@
 #include "anchor_search.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 namespace dff {
@@ -11,13 +12,31 @@ void AnchorSearch::start(PlaneLabeller::Beginning beginning)
 {
     beginning_ = beginning;
     frames_.clear();
+    before_.reset();
     failed_ = false;
+}
+
+void AnchorSearch::resume(const CameraAnchor &before, std::int64_t off_ns)
+{
+    start(PlaneLabeller::Beginning::UnderWay);
+    before_ = before;
+    off_ns_ = off_ns;
+}
+
+bool AnchorSearch::near_the_one_before(std::int64_t offset_ns) const
+{
+    return !before_ || std::abs(offset_ns - before_->offset_ns) <= off_ns_ + timing_.period_ns / 16;
 }
 
 std::size_t AnchorSearch::needed() const
 {
     return beginning_ == PlaneLabeller::Beginning::FromRest ? timing_.planes
                                                             : 3 * std::size_t{timing_.planes};
+}
+
+std::size_t AnchorSearch::most() const
+{
+    return beginning_ == PlaneLabeller::Beginning::FromRest ? 8 * needed() : 2 * needed();
 }
 
 /* What follows if the first frame, by its number, is of this trigger; nothing if that cannot be. */
@@ -38,15 +57,16 @@ std::optional<CameraAnchor> AnchorSearch::fit(std::int64_t index, const TriggerT
     }
     const bool from_rest = beginning_ == PlaneLabeller::Beginning::FromRest;
     const std::int64_t margin_ns = from_rest ? -timing_.period_ns / 8 : timing_.period_ns / 32;
-    const std::int64_t transfer_ns = latency_ns - timing_.exposure_ns;
+    const std::int64_t transfer_ns = latency_ns - timing_.exposure_ns - timing_.transfer_ns;
     if (transfer_ns < margin_ns || transfer_ns > timing_.period_ns - timing_.period_ns / (from_rest ? 8 : 32))
         return std::nullopt;
     const std::int64_t last_index = index + numbers_.steps(first_id, frames_.back().id);
     if (frames_.front().camera_ns == 0)
         return CameraAnchor{latency_ns, latency_ns, last_index};
-    if (most_ns - least_ns > timing_.tolerance_ns())
+    const std::int64_t offset_ns = least_ns + (most_ns - least_ns) / 2;
+    if (most_ns - least_ns > timing_.tolerance_ns() || !near_the_one_before(offset_ns))
         return std::nullopt;
-    return CameraAnchor{least_ns + (most_ns - least_ns) / 2, latency_ns, last_index};
+    return CameraAnchor{offset_ns, latency_ns, last_index};
 }
 
 std::optional<CameraAnchor> AnchorSearch::only_fit(const TriggerTimes &triggers) const
@@ -84,7 +104,7 @@ std::optional<CameraAnchor> AnchorSearch::add(const CameraFrame &frame, const Tr
     const auto anchor = possible ? only_fit(triggers) : std::nullopt;
     if (anchor)
         failed_ = false;
-    else if (possible || frames_.size() >= 2 * needed())
+    else if (frames_.size() >= most() || (possible && beginning_ == PlaneLabeller::Beginning::UnderWay))
         give_up();
     return anchor;
 }

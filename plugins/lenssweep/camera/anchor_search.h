@@ -20,18 +20,23 @@ struct CameraAnchor {
 
 /* Finds out which trigger the first frames are of. Two facts must say the same:
  *
- * - a frame is here no sooner than its exposure ends, and, if nothing delays it, no later than one period
- * after that, since a camera that took longer could not keep up;
- * - after a beginning from rest, the first frame is of the first trigger.
+ * - a frame is here no sooner than its exposure ends and its bytes have crossed the link, and, if nothing
+ * delays it, no later than one period after that;
+ * - after a beginning from rest, the first frame is of the first trigger. Were it of a later one, every frame
+ * would seem to take a period more. So the search goes on for some sweeps if all were delayed, on a machine
+ * that is slow to begin.
  *
  * Where the triggers were under way already the first fact stands alone: then it must hold over three sweeps,
- * and with a margin at both ends.
+ * and with a margin at both ends. A machine that lags all that time, by a period or more, would deceive it.
  */
 class AnchorSearch {
 public:
     AnchorSearch(const SweepTiming &timing, FrameNumbers numbers) : timing_(timing), numbers_(numbers) {}
 
     void start(PlaneLabeller::Beginning beginning);
+
+    /* Triggers were under way, and the camera's clock was known before; it is no more than `off_ns` off. */
+    void resume(const CameraAnchor &before, std::int64_t off_ns);
 
     /* A frame, and what is known of the triggers when it comes. */
     std::optional<CameraAnchor> add(const CameraFrame &frame, const TriggerTimes &triggers);
@@ -41,6 +46,8 @@ public:
 
 private:
     std::size_t needed() const;
+    std::size_t most() const;
+    bool near_the_one_before(std::int64_t offset_ns) const;
     std::optional<CameraAnchor> fit(std::int64_t index, const TriggerTimes &triggers) const;
     std::optional<CameraAnchor> only_fit(const TriggerTimes &triggers) const;
     void give_up();
@@ -49,6 +56,8 @@ private:
     FrameNumbers numbers_;
     PlaneLabeller::Beginning beginning_ = PlaneLabeller::Beginning::FromRest;
     std::vector<CameraFrame> frames_;
+    std::optional<CameraAnchor> before_;
+    std::int64_t off_ns_ = 0;
     bool failed_ = false;
 };
 

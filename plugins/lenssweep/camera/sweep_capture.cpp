@@ -105,15 +105,42 @@ void SweepCapture::start(const PixelLayout &layout, int width, int height)
     lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
                     std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
 
+    const double link_bits = camera_.told_link_bits();
+    timing_.transfer_ns =
+        link_bits > 0 ? std::llround(static_cast<double>(camera_.payload()) * 8e9 / link_bits) : 0;
+    make_triggers();
+    acquire();
+    begin_triggers();
+}
+
+void SweepCapture::acquire()
+{
     buffers_ = std::max(16U, static_cast<unsigned>(std::lround(settings_.frame_rate() / 4)));
     auto stream = std::make_unique<CameraStream>(camera_, buffers_, camera_.payload());
     {
         const std::lock_guard lock(stream_mutex_);
         stream_ = std::move(stream);
     }
-    make_triggers();
     camera_.start_acquisition();
     wait_armed();
+}
+
+void SweepCapture::end_acquisition() noexcept
+{
+    if (!stream_)
+        return;
+    camera_.stop_acquisition();
+    underruns_ += stream_->underruns();
+    const std::lock_guard lock(stream_mutex_);
+    stream_.reset();
+}
+
+/* On a machine or a link that lags, frames of the triggers before may still be on their way; they would be
+ * taken for the first ones of those that begin. They end with the stream. */
+void SweepCapture::begin_anew()
+{
+    end_acquisition();
+    acquire();
     begin_triggers();
 }
 
@@ -137,11 +164,7 @@ void SweepCapture::stop() noexcept
 {
     if (triggers_)
         triggers_->stop();
-    if (!stream_)
-        return;
-    camera_.stop_acquisition();
-    const std::lock_guard lock(stream_mutex_);
-    stream_.reset();
+    end_acquisition();
 }
 
 void SweepCapture::change(const CaptureSettings &settings)
@@ -182,7 +205,9 @@ void SweepCapture::recover()
         throw CameraError(
             "The camera's frames and the triggers do not fit together. Check that planes and rate are "
             "those of the sequencer, that sync-line pulses at plane 0, and that the camera takes every "
-            "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure.");
+            "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure, beside "
+            "the "
+            "time that the link needs for it.");
     restarts_++;
     if (triggers_->restartable()) {
         triggers_->stop();
@@ -228,7 +253,7 @@ std::optional<CapturedPlane> SweepCapture::next(std::int64_t deadline_ns)
         next_check_ns_ = now_ns + second_ns;
     }
     if (quiet_until_ns_ && now_ns >= *quiet_until_ns_)
-        begin_triggers();
+        begin_anew();
     auto buffer =
         stream_->wait(std::min({deadline_ns, next_check_ns_, quiet_until_ns_.value_or(deadline_ns)}));
     return buffer ? labelled(std::move(*buffer)) : std::nullopt;
@@ -254,7 +279,7 @@ CaptureCounts SweepCapture::counts() const
     counts.wrong_edges += triggers_ ? triggers_->wrong_edges() : 0;
     counts.incomplete = incomplete_;
     counts.labels.unlabelled += unlabelled_;
-    counts.underruns = stream_ ? stream_->underruns() : 0;
+    counts.underruns = underruns_ + (stream_ ? stream_->underruns() : 0);
     counts.restarts = restarts_;
     return counts;
 }

@@ -69,7 +69,7 @@ public:
     CaptureCounts counts() const;
 
     /* From the start of an exposure to the arrival of the frame, at the most that labels can be told at. */
-    std::int64_t latency_ns() const { return timing_.exposure_ns + timing_.period_ns; }
+    std::int64_t latency_ns() const { return timing_.exposure_ns + timing_.transfer_ns + timing_.period_ns; }
     unsigned buffers() const { return buffers_; }
     LinkLoad load();
     int code(unsigned plane) const { return lens_->code(plane); }
@@ -81,8 +81,11 @@ public:
 private:
     void set_timing();
     void make_triggers();
+    void acquire();
+    void end_acquisition() noexcept;
     void wait_armed();
     void begin_triggers();
+    void begin_anew();
     void recover();
     std::optional<CapturedPlane> labelled(CameraBuffer buffer);
 
@@ -101,6 +104,7 @@ private:
     ExposureClock clock_;
     CaptureCounts before_; /* of triggers that are gone */
     std::uint64_t incomplete_ = 0;
+    std::uint64_t underruns_ = 0; /* of streams that are gone */
     std::uint64_t restarts_ = 0;
     std::uint64_t unlabelled_ = 0; /* while triggers came to rest, since before_ */
     std::uint64_t sweep_base_ = 0; /* of the labels' sweeps */

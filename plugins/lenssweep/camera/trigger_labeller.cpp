@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::int64_t drift_ppm = 200;
 
+/* One may be late by just what a clock jumped. */
+constexpr unsigned frames_to_confirm = 2;
+
 } // namespace
 
 TriggerLabeller::TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers)
@@ -20,6 +23,7 @@ TriggerLabeller::TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers
 
 void TriggerLabeller::start(Beginning beginning, std::int64_t)
 {
+    beginning_ = beginning;
     triggers_.restart();
     search_.start(beginning);
     anchor_.reset();
@@ -49,7 +53,7 @@ FrameVerdict TriggerLabeller::seek(const CameraFrame &frame)
         newest_ = Placed{frame.id, anchor_->index, triggers_.rhythm()};
         verified_ns_ = frame.arrival_ns;
         disagreeing_ = 0;
-        confirmed_ = true;
+        unconfirmed_ = 0;
         anchor_broken_ = false;
     }
     return {std::nullopt, Unlabelled::Seeking};
@@ -61,13 +65,19 @@ bool TriggerLabeller::check_clock(const CameraFrame &frame)
 {
     const std::int64_t off_ns = (frame.arrival_ns - verified_ns_) / 1'000'000 * drift_ppm;
     if (off_ns > timing_.period_ns / 8)
-        confirmed_ = false;
+        unconfirmed_ = std::max(unconfirmed_, 1U);
     const bool out_of_reach = frame.camera_ns == 0 && newest_->rhythm != triggers_.rhythm();
-    if (off_ns <= timing_.period_ns * 3 / 8 && disagreeing_ < 3 * timing_.planes && !anchor_broken_ &&
-        !out_of_reach)
+    const bool useless = disagreeing_ >= 3 * timing_.planes || anchor_broken_ || out_of_reach;
+    if (off_ns <= timing_.period_ns * 3 / 8 && !useless)
         return true;
+    const bool near = !useless && frame.camera_ns != 0 && off_ns < timing_.period_ns * 7 / 16;
+    if (near)
+        search_.resume(*anchor_, off_ns);
+    else if (beginning_ == Beginning::FromRest)
+        lost_ = true;
+    else
+        search_.start(Beginning::UnderWay);
     anchor_.reset();
-    search_.start(Beginning::UnderWay);
     return false;
 }
 
@@ -106,7 +116,7 @@ bool TriggerLabeller::agrees(const CameraFrame &frame, std::int64_t exposed_ns, 
                          numbers_.apart(newest_->id, frame.id, trigger.index - newest_->index);
     if (!timely || !follows) {
         counts_.disagreements++;
-        confirmed_ = false;
+        unconfirmed_ = frames_to_confirm;
         return false;
     }
     const std::int64_t delay_ns = frame.arrival_ns - trigger.time_ns - anchor_->latency_ns;
@@ -114,8 +124,9 @@ bool TriggerLabeller::agrees(const CameraFrame &frame, std::int64_t exposed_ns, 
         anchor_broken_ = true; /* no frame is here before its time: the clock jumped */
         return false;
     }
-    confirmed_ = confirmed_ || delay_ns <= timing_.tolerance_ns();
-    return confirmed_;
+    if (unconfirmed_ > 0 && delay_ns <= timing_.tolerance_ns())
+        unconfirmed_--;
+    return unconfirmed_ == 0;
 }
 
 FrameVerdict TriggerLabeller::place(const CameraFrame &frame)

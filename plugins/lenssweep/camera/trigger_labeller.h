@@ -17,10 +17,11 @@ namespace dff {
  * A frame has a label if its time, brought to the host's clock, is that of a trigger within a quarter of a
  * period; if its number is as many after the frame before it as its trigger is after that one's; and if it
  * arrived as long after its trigger as frames do. If not, the rest of its sweep has no label; from the next
- * sweep on labels come again, as soon as a frame arrived as long after its trigger as frames do.
+ * sweep on labels come again, as soon as two frames arrived as long after their triggers as frames do.
  *
  * The camera's clock is followed. It may run 200 ppm off the host's; after a silence in which that would have
- * grown to three eighths of a period it must be found anew.
+ * grown to three eighths of a period it must be found anew. Where that, or a clock that was set, leaves more
+ * than one answer, triggers that can begin from rest must.
  */
 class TriggerLabeller : public PlaneLabeller {
 public:
@@ -58,8 +59,9 @@ private:
     std::optional<std::int64_t> untriggered_ns_; /* when a frame was exposed that no trigger is known for */
     std::int64_t verified_ns_ = 0;               /* arrival of the last frame that agreed */
     unsigned disagreeing_ = 0;                   /* frames since then */
-    bool confirmed_ = false; /* the anchor holds: a frame arrived as it should since the last doubt */
+    unsigned unconfirmed_ = 0; /* frames that must yet arrive as they should, since the last doubt */
     bool anchor_broken_ = false;
+    Beginning beginning_ = Beginning::FromRest;
     bool lost_ = false;
 };
 

@@ -57,8 +57,8 @@ void play_frame(Rig &rig, std::int64_t trigger_ns, std::uint64_t sweep, unsigned
         return;
     const std::int64_t late_ns =
         happens(rig.faults.late, random) ? up_to(3 * rig.timing.period_ns, random) : 0;
-    event.frame.arrival_ns =
-        trigger_ns + rig.timing.exposure_ns + rig.transfer_ns + up_to(rig.jitter_ns, random) + late_ns;
+    event.frame.arrival_ns = trigger_ns + rig.timing.exposure_ns + rig.timing.transfer_ns + rig.transfer_ns +
+                             rig.lag_ns + up_to(rig.jitter_ns, random) + late_ns;
     event.seen_ns = event.frame.arrival_ns;
     events.push_back(event);
     if (!happens(rig.faults.doubled, random))
@@ -76,7 +76,16 @@ std::vector<RigEvent> play(Rig &rig, std::int64_t begin_ns, std::uint64_t first_
     std::vector<RigEvent> events;
     const std::int64_t flyback_ns = rig.timing.sweep_ns - rig.timing.planes * rig.timing.period_ns;
     std::int64_t trigger_ns = begin_ns;
+    std::uint64_t lag_ends = 0;
+    rig.lag_ns = 0;
     for (std::uint64_t sweep = first_sweep; sweep < first_sweep + sweeps; sweep++) {
+        if (sweep >= lag_ends)
+            rig.lag_ns = 0;
+        /* That a camera always was as slow, nobody could tell. */
+        if (sweep >= first_sweep + 5 && happens(rig.faults.lag, random)) {
+            rig.lag_ns = up_to(6 * rig.timing.period_ns, random);
+            lag_ends = sweep + 1 + random() % 8;
+        }
         for (unsigned plane = 0; plane < rig.timing.planes; plane++) {
             if (plane == 0)
                 play_edge(rig, trigger_ns, random, events);

@@ -22,6 +22,7 @@ struct Faults {
     double edge_wrong = 0;   /* comes where there is none */
     double clock_jump = 0;   /* the camera's clock is set, before a trigger, up to three periods off */
     double pause = 0;        /* the triggers rest for up to two seconds after one */
+    double lag = 0;          /* all frames of up to eight sweeps are up to six periods late */
 };
 
 /* A sequencer and a camera of the laboratory. */
@@ -32,8 +33,9 @@ struct Rig {
     bool has_clock = true;
     double drift_ppm = 0;             /* of the camera's clock */
     std::int64_t clock_offset_ns = 0; /* and where it stands */
-    std::int64_t transfer_ns = 0;     /* from the end of an exposure to the arrival */
-    std::int64_t jitter_ns = 0;       /* of arrivals */
+    std::int64_t transfer_ns = 0; /* from the end of an exposure to the arrival, beside the link's share */
+    std::int64_t lag_ns = 0;      /* and while frames lag */
+    std::int64_t jitter_ns = 0;   /* of arrivals */
     Faults faults;
 };
 

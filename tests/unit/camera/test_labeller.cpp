@@ -28,7 +28,10 @@ Rig paper_rig()
 
 /* The paper's rig with a sync line, and what its labeller makes of it. */
 struct Bench {
-    explicit Bench(unsigned sweeps) : events(play(rig, 1'000'000'000, 0, sweeps, random)) {}
+    explicit Bench(unsigned sweeps, const Rig &parts = paper_rig())
+        : rig(parts), events(play(rig, 1'000'000'000, 0, sweeps, random))
+    {
+    }
 
     /* Labels of the frames that have one. */
     std::vector<dff::FrameLabel> run()
@@ -70,8 +73,24 @@ struct Bench {
 
     void erase(std::size_t index) { events.erase(events.begin() + static_cast<std::ptrdiff_t>(index)); }
 
+    /* The triggers rest before a sweep; the frames after that come late. */
+    void pause_before(std::uint64_t sweep, std::int64_t pause_ns, std::int64_t late_ns)
+    {
+        for (std::size_t i = edge(static_cast<unsigned>(sweep)); i < events.size(); i++) {
+            RigEvent &event = events[i];
+            if (event.kind == RigEvent::Frame && event.sweep < sweep)
+                continue;
+            event.time_ns += pause_ns;
+            event.frame.camera_ns += pause_ns;
+            event.frame.arrival_ns += pause_ns + late_ns;
+        }
+        std::stable_sort(events.begin(), events.end(), [](const RigEvent &a, const RigEvent &b) {
+            return std::max(a.time_ns, a.frame.arrival_ns) < std::max(b.time_ns, b.frame.arrival_ns);
+        });
+    }
+
     std::mt19937_64 random{1};
-    Rig rig = paper_rig();
+    Rig rig;
     std::vector<RigEvent> events;
     dff::SyncRhythm rhythm{rig.timing};
     dff::TriggerLabeller labeller{rig.timing, FrameNumbers(FrameNumbering::GigE16), rhythm};
@@ -172,34 +191,49 @@ TEST(SyncLine, a_first_frame_that_never_came_is_noticed)
     EXPECT_TRUE(bench.labeller.lost());
 }
 
+TEST(SyncLine, frames_that_all_come_late_at_first_cost_only_those_sweeps)
+{
+    Bench bench(10);
+    for (RigEvent &event : bench.events)
+        if (event.kind == RigEvent::Frame && event.sweep < 3)
+            event.frame.arrival_ns += 2 * period;
+    EXPECT_EQ(bench.run().size(), 7U * 6U - 1U);
+    EXPECT_FALSE(bench.labeller.lost());
+}
+
+TEST(SyncLine, a_slow_link_does_not_look_like_a_missed_trigger)
+{
+    Rig rig = paper_rig();
+    rig.transfer_ns = period;
+    EXPECT_TRUE(Bench(10, rig).run().empty()) << "nobody knows how fast the link is";
+    rig.timing.transfer_ns = period * 9 / 10;
+    rig.transfer_ns = period / 10;
+    EXPECT_EQ(Bench(10, rig).run().size(), 9U * 6U);
+}
+
+TEST(SyncLine, a_clock_that_was_set_needs_a_start_from_rest)
+{
+    Bench bench(10);
+    for (RigEvent &event : bench.events)
+        if (event.kind == RigEvent::Frame && event.sweep >= 4)
+            event.frame.camera_ns -= 20 * period + period / 2;
+    EXPECT_EQ(bench.run().size(), 3U * 6U);
+    EXPECT_TRUE(bench.labeller.lost());
+}
+
 TEST(SyncLine, ten_seconds_without_triggers_cost_two_sweeps)
 {
     Bench bench(20);
-    for (std::size_t i = bench.edge(8); i < bench.events.size(); i++) {
-        RigEvent &event = bench.events[i];
-        if (event.kind == RigEvent::Frame && event.sweep < 8)
-            continue;
-        event.time_ns += 10'003'000'000;
-        event.frame.camera_ns += 10'003'000'000;
-        event.frame.arrival_ns += 10'003'000'000;
-    }
-    std::stable_sort(bench.events.begin(), bench.events.end(), [](const RigEvent &a, const RigEvent &b) {
-        return std::max(a.time_ns, a.frame.arrival_ns) < std::max(b.time_ns, b.frame.arrival_ns);
-    });
-    bench.labeller.start(PlaneLabeller::Beginning::FromRest, 0);
-    std::size_t labels = 0;
-    for (const RigEvent &event : bench.events) {
-        if (event.kind == RigEvent::Edge) {
-            bench.rhythm.edge(event.time_ns);
-            continue;
-        }
-        const auto verdict = bench.labeller.label(event.frame);
-        if (verdict.label) {
-            EXPECT_EQ(verdict.label->plane, event.plane);
-        }
-        labels += verdict.label.has_value();
-    }
-    EXPECT_EQ(labels, (20U - 1U - 2U) * 6U);
+    bench.pause_before(8, 10'003'000'000, 0);
+    EXPECT_EQ(bench.run().size(), (20U - 1U - 2U) * 6U);
+}
+
+TEST(SyncLine, frames_that_lag_after_a_pause_are_not_taken_for_later_ones)
+{
+    Bench bench(20);
+    bench.pause_before(8, 13'000'000'000, period);
+    EXPECT_EQ(bench.run().size(), (8U - 1U) * 6U);
+    EXPECT_TRUE(bench.labeller.lost());
 }
 
 TEST(SentTriggers, label_the_frames_they_were_sent_for)
