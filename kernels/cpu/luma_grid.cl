@@ -71,14 +71,14 @@ inline int first_cell(void)
     return ((int)get_group_id(0) + 1) * ROW;
 }
 
-/* The part of the picture under a column of the grid, copied by 16 pixels of a row after the other: steps of luma, and
- * planes. What fills the last vector counts nowhere. */
-#define PARTS ((SIGMA_XY + 15) / 16)
-#define AREA_VECTORS ((PARTS * SIGMA_XY + 3) / 4)
+/* The part of the picture under a column of the grid, in strips 16 pixels wide: steps of luma, and planes. What fills the
+ * last vector counts nowhere. */
+#define STRIPS ((SIGMA_XY + 15) / 16)
+#define STRIP_VECTORS ((SIGMA_XY + 3) / 4)
 #define AHEAD 256   /* columns asked for ahead */
 #define OUTSIDE 255 /* not a step of luma, whose least size is 4 */
 typedef struct {
-    uchar64 steps[AREA_VECTORS], planes[AREA_VECTORS];
+    uchar64 steps[STRIPS][STRIP_VECTORS], planes[STRIPS][STRIP_VECTORS];
     int first, last; /* steps among them */
 } Area;
 
@@ -94,11 +94,11 @@ inline void load_area(__global const uchar *sparse, __global const uchar *luma, 
                       Area *area)
 {
     const int right = min(left + SIGMA_XY, width), bottom = min(top + SIGMA_XY, height);
-    uchar *steps = (uchar *)area->steps, *planes = (uchar *)area->planes;
     uchar16 least = OUTSIDE, most = 0;
-    for (int i = 0; i < AREA_VECTORS; i++)
-        area->steps[i] = OUTSIDE;
+    for (int i = 0; i < STRIPS * STRIP_VECTORS; i++)
+        area->steps[0][i] = OUTSIDE;
     for (int x = left; x < right; x += 16) {
+        uchar *steps = (uchar *)area->steps[(x - left) / 16], *planes = (uchar *)area->planes[(x - left) / 16];
         const int first = min(x, width - 16); /* at the right border the lanes before come along */
         const char16 column = convert_char16(LANE) + (char)(first - x);
         const uchar16 outside = as_uchar16(column < (char)0 || column >= (char)min(right - x, 16));
@@ -106,7 +106,8 @@ inline void load_area(__global const uchar *sparse, __global const uchar *luma, 
             const ulong pixel = (ulong)y * width + first;
             PREFETCH(luma + pixel + AHEAD);
             PREFETCH(sparse + pixel + AHEAD);
-            const uchar16 step = *(__global const lanes8 *)(luma + pixel) / (uchar16)SIGMA_LUMA;
+            const ushort16 pixels = convert_ushort16(*(__global const lanes8 *)(luma + pixel));
+            const uchar16 step = convert_uchar16(pixels / (ushort)SIGMA_LUMA);
             *(lanes8 *)steps = step | outside;
             *(lanes8 *)planes = *(__global const lanes8 *)(sparse + pixel);
             least = min(least, step | outside);
@@ -134,15 +135,20 @@ inline ushort32 sum_bytes(uchar64 v)
 /* Pixels of an area in a step of luma, known ones, and the sum of their planes. */
 inline float3 count_step(const Area *area, uchar step)
 {
-    ushort32 pixels = 0, known = 0, planes = 0;
-    for (int i = 0; i < AREA_VECTORS; i++) {
-        const uchar64 counts = __builtin_astype(area->steps[i] == step, uchar64);
-        const uchar64 tells = counts & __builtin_astype(area->planes[i] != (uchar)UNKNOWN_PLANE, uchar64);
-        pixels += sum_bytes(counts & (uchar)1);
-        known += sum_bytes(tells & (uchar)1);
-        planes += sum_bytes(tells & area->planes[i]);
+    float3 sums = 0.0f;
+    for (int strip = 0; strip < STRIPS; strip++) {
+        ushort32 pixels = 0, known = 0, planes = 0;
+        for (int i = 0; i < STRIP_VECTORS; i++) {
+            const uchar64 plane = area->planes[strip][i];
+            const uchar64 counts = __builtin_astype(area->steps[strip][i] == step, uchar64);
+            const uchar64 tells = counts & __builtin_astype(plane != (uchar)UNKNOWN_PLANE, uchar64);
+            pixels += sum_bytes(counts & (uchar)1);
+            known += sum_bytes(tells & (uchar)1);
+            planes += sum_bytes(tells & plane);
+        }
+        sums += (float3)(sum_of_shorts(pixels), sum_of_shorts(known), sum_of_shorts(planes));
     }
-    return (float3)(sum_of_shorts(pixels), sum_of_shorts(known), sum_of_shorts(planes));
+    return sums;
 }
 
 /* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
