@@ -25,7 +25,10 @@ class Recorder:
     async def _follow(self, signal, lane):
         while True:
             await ValueChange(signal)
-            lane.append((get_sim_time("ps") - self.begin, self._value(signal)))
+            time = get_sim_time("ps") - self.begin
+            if lane[-1][0] == time:
+                lane.pop()  # gone before any time had passed
+            lane.append((time, self._value(signal)))
 
     def draw(self, title, vectors=(), notes=(), states=None):
         """The picture of what was recorded up to now. vectors: names drawn as numbers; notes: (ps, text);

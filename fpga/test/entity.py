@@ -8,19 +8,23 @@ import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge, RisingEdge, Timer, ValueChange
 
-CLOCK_HZ = int(os.environ["BENCH_CLOCK_HZ"])
+CLOCK_HZ = int(os.environ.get("BENCH_CLOCK_HZ", 8_000_000))
 CLOCK_PS = 10**12 // CLOCK_HZ
 
 _clock = []
 
 
-async def begin(dut, **inputs):
-    """Starts the clock if this is the first time in a test, sets inputs, resets."""
+def drive(dut, **inputs):
+    """Starts the clock if this is the first time in a test, sets inputs."""
     if not _clock or _clock[0].done():
         _clock[:] = [cocotb.start_soon(Clock(dut.clk, CLOCK_PS, unit="ps").start())]
-    dut.reset.value = 1
     for name, value in inputs.items():
         getattr(dut, name).value = value
+
+
+async def begin(dut, **inputs):
+    """The same, and a reset."""
+    drive(dut, reset=1, **inputs)
     await cycles(dut, 4)
     dut.reset.value = 0
     await cycles(dut, 2)

@@ -13,7 +13,7 @@ from cocotb.triggers import Timer
 
 import coverage
 from drawing import Recorder
-from entity import CLOCK_PS, begin, cycles, cycles_until, pulse
+from entity import CLOCK_PS, begin, cycles, cycles_until, drive, pulse
 
 DOC = Path(__file__).resolve().parent.parent / "doc"
 
@@ -115,6 +115,40 @@ async def plane_table(dut):
     names = [name.removesuffix("_state") for name in coverage.states_of("plane_table")]
     keep("plane_table", record.draw("plane_table: three planes are copied and checked, and wait for the end of the sweep",
                                     vectors=["address"], states={"state": names}))
+
+
+@cocotb.test()
+async def plane_order(dut):
+    from test_plane_order import Rig
+    rig = Rig(dut)
+    await rig.begin(3)
+    await rig.slot()
+    record = Recorder(clk=dut.clk, fetch=dut.fetch, table_read=dut.table_read, table_plane=dut.table_plane,
+                      table_column=dut.table_column, fetched=dut.fetched, advance=dut.advance, plane=dut.plane,
+                      first=dut.first, last=dut.last)
+    await cycles(dut, 2)
+    for _ in range(3):
+        await rig.slot()
+        await cycles(dut, 4)
+    keep("plane_order", record.draw("plane_order: planes 1 and 2 of three, then plane 0 of the next sweep",
+                                    vectors=["table_plane", "table_column", "plane"]))
+
+
+@cocotb.test()
+async def slot_timer(dut):
+    from test_slot_timer import held
+    await held(dut, period=20, flyback=8, exposure=10, lead=3)
+    record = Recorder(running=dut.running, flyback=dut.flyback, slot_time=dut.slot_time, fire_due=dut.fire_due,
+                      expose_due=dut.expose_due, slot_end=dut.slot_end)
+    await cycles(dut, 8)
+    drive(dut, running=1)
+    await cycles(dut, 80)
+    drive(dut, flyback=0)
+    await cycles(dut, (28 + 2 * 20) * 8 - 80)
+    drive(dut, running=0)
+    await cycles(dut, 16)
+    keep("slot_timer", record.draw("slot_timer: period 20 us, flyback 8 us at first, exposure 10 us, lead 3 us",
+                                   vectors=["flyback", "slot_time"]))
 
 
 @cocotb.test()

@@ -247,6 +247,7 @@ async def stop_at_any_moment_gives_no_further_trigger(dut):
     for moment in range(7, 700, 31):
         await cycles(dut, moment)
         fires = len(rig.fires)
+        assert [fire[1] for fire in rig.fires] == [0, 1, 2][:fires], "does not start with the first plane"
         last = rig.fires[-1][0] if rig.fires else None
         dut.go.value = 0
         await cycles(dut, 2)
