@@ -8,7 +8,6 @@ library ieee;
   use ieee.numeric_std.all;
 
 library work;
-  use work.sweep_registers_pkg.all;
   use work.timing_pkg.all;
 
 entity lens_sweep_top is
@@ -61,32 +60,6 @@ architecture rtl of lens_sweep_top is
   signal lens_scl_low   : std_ulogic;
   signal lens_sda_low   : std_ulogic;
 
-  signal word_number : unsigned(6 downto 0);
-  signal writable    : std_ulogic;
-  signal read        : std_ulogic;
-  signal read_data   : std_ulogic_vector(15 downto 0);
-  signal write       : std_ulogic;
-  signal write_data  : std_ulogic_vector(15 downto 0);
-
-  signal host_plane  : unsigned(5 downto 0);
-  signal host_column : unsigned(1 downto 0);
-  signal host_write  : std_ulogic;
-  signal host_data   : std_ulogic_vector(15 downto 0);
-  signal host_q      : std_ulogic_vector(15 downto 0);
-  signal host_read   : std_ulogic;
-  signal commit      : std_ulogic;
-  signal pending     : std_ulogic;
-  signal apply       : std_ulogic;
-  signal idle        : std_ulogic;
-
-  signal checked_planes    : unsigned(15 downto 0);
-  signal checked_period    : unsigned(15 downto 0);
-  signal checked_exposure  : unsigned(15 downto 0);
-  signal checked_width     : unsigned(15 downto 0);
-  signal checked_lead      : unsigned(7 downto 0);
-  signal checked_trail     : unsigned(7 downto 0);
-  signal checked_new_level : std_ulogic;
-
   signal planes             : unsigned(6 downto 0);
   signal triangle           : std_ulogic;
   signal trigger_active_low : std_ulogic;
@@ -102,31 +75,31 @@ architecture rtl of lens_sweep_top is
   signal lens_stage         : std_ulogic_vector(15 downto 0);
   signal lens_commit        : std_ulogic_vector(15 downto 0);
 
+  signal table_plane  : unsigned(5 downto 0);
+  signal table_column : unsigned(1 downto 0);
+  signal table_data   : std_ulogic_vector(15 downto 0);
+  signal table_read   : std_ulogic;
+
   signal go             : std_ulogic;
   signal sequencer_busy : std_ulogic;
+  signal idle           : std_ulogic;
   signal plane          : unsigned(5 downto 0);
   signal downward       : std_ulogic;
   signal boundary       : std_ulogic;
   signal fire           : std_ulogic;
   signal fire_sync      : std_ulogic;
-  signal late           : std_ulogic;
-  signal table_plane    : unsigned(5 downto 0);
-  signal table_column   : unsigned(1 downto 0);
-  signal table_data     : std_ulogic_vector(15 downto 0);
-  signal table_read     : std_ulogic;
+  signal trigger_active : std_ulogic;
+  signal sync_active    : std_ulogic;
 
-  signal lens_start        : std_ulogic;
-  signal lens_register     : std_ulogic_vector(7 downto 0);
-  signal lens_value        : std_ulogic_vector(7 downto 0);
-  signal lens_done         : std_ulogic;
-  signal lens_fault        : std_ulogic;
-  signal lens_faults       : std_ulogic_vector(3 downto 0);
-  signal sweep_faults      : std_ulogic_vector(4 downto 0);
-  signal table_faults      : std_ulogic_vector(2 downto 0);
-  signal table_fault_plane : unsigned(5 downto 0);
-  signal trigger_active    : std_ulogic;
-  signal sync_active       : std_ulogic;
-  signal register_error    : std_ulogic;
+  signal lens_start    : std_ulogic;
+  signal lens_register : std_ulogic_vector(7 downto 0);
+  signal lens_value    : std_ulogic_vector(7 downto 0);
+  signal lens_done     : std_ulogic;
+  signal lens_fault    : std_ulogic;
+  signal lens_faults   : std_ulogic_vector(3 downto 0);
+  signal late          : std_ulogic;
+  signal sweep_faults  : std_ulogic_vector(4 downto 0);
+  signal failed        : std_ulogic;
 
 begin
 
@@ -152,7 +125,7 @@ begin
       end if;
       reset <= button or power_up_reset;
       busy  <= sequencer_busy or trigger_active or sync_active;
-      error <= register_error;
+      error <= failed;
       idle  <= not (sequencer_busy or trigger_active);
     end if;
 
@@ -232,59 +205,21 @@ begin
       sync_out => lens_sda_level
     );
 
-  host : entity work.i2c_slave
-    generic map (
-      CLOCK_HZ   => CLOCK_HZ,
-      ADDRESS    => HOST_ADDRESS,
-      WORD_COUNT => WORD_COUNT,
-      HOLD_S     => HOST_HOLD_S,
-      TIMEOUT_S  => HOST_TIMEOUT_S
-    )
-    port map (
-      clk         => clk,
-      reset       => reset,
-      scl_in      => host_scl_level,
-      sda_in      => host_sda_level,
-      sda_low     => host_sda_low,
-      word_number => word_number,
-      writable    => writable,
-      read        => read,
-      read_data   => read_data,
-      write       => write,
-      write_data  => write_data
-    );
-
-  registers : entity work.register_file
+  host : entity work.host_interface
     generic map (
       CLOCK_HZ    => CLOCK_HZ,
       TICK_HZ     => TICK_HZ,
-      LENS_BUS_HZ => LENS_BUS_HZ
+      LENS_BUS_HZ => LENS_BUS_HZ,
+      ADDRESS     => HOST_ADDRESS,
+      HOLD_S      => HOST_HOLD_S,
+      TIMEOUT_S   => HOST_TIMEOUT_S
     )
     port map (
       clk                => clk,
       reset              => reset,
-      word_number        => word_number,
-      writable           => writable,
-      read               => read,
-      read_data          => read_data,
-      write              => write,
-      write_data         => write_data,
-      table_plane        => host_plane,
-      table_column       => host_column,
-      table_write        => host_write,
-      table_data         => host_data,
-      table_read         => host_read,
-      table_q            => host_q,
-      commit             => commit,
-      pending            => pending,
-      apply              => apply,
-      checked_planes     => checked_planes,
-      checked_period     => checked_period,
-      checked_exposure   => checked_exposure,
-      checked_width      => checked_width,
-      checked_lead       => checked_lead,
-      checked_trail      => checked_trail,
-      checked_new_level  => checked_new_level,
+      scl_in             => host_scl_level,
+      sda_in             => host_sda_level,
+      sda_low            => host_sda_low,
       planes             => planes,
       triangle           => triangle,
       trigger_active_low => trigger_active_low,
@@ -299,54 +234,21 @@ begin
       lens_start         => lens_wake,
       lens_stage         => lens_stage,
       lens_commit        => lens_commit,
+      table_plane        => table_plane,
+      table_column       => table_column,
+      table_read         => table_read,
+      table_data         => table_data,
       run                => run_level,
       go                 => go,
       busy               => sequencer_busy,
-      downward           => downward,
+      idle               => idle,
+      boundary           => boundary,
       plane              => plane,
+      downward           => downward,
       sweep_begun        => fire_sync,
       frame_begun        => fire,
       sweep_faults       => sweep_faults,
-      table_faults       => table_faults,
-      table_fault_plane  => table_fault_plane,
-      error              => register_error
-    );
-
-  planes_table : entity work.plane_table
-    generic map (
-      CLOCK_HZ    => CLOCK_HZ,
-      TICK_HZ     => TICK_HZ,
-      LENS_BUS_HZ => LENS_BUS_HZ
-    )
-    port map (
-      clk           => clk,
-      reset         => reset,
-      host_plane    => host_plane,
-      host_column   => host_column,
-      host_write    => host_write,
-      host_data     => host_data,
-      host_read     => host_read,
-      host_q        => host_q,
-      commit        => commit,
-      planes        => checked_planes,
-      period        => checked_period,
-      exposure      => checked_exposure,
-      trigger_width => checked_width,
-      lead          => checked_lead,
-      trail         => checked_trail,
-      new_level     => checked_new_level,
-      pending       => pending,
-      apply         => apply,
-      bad_planes    => table_faults(0),
-      bad_timing    => table_faults(1),
-      bad_code      => table_faults(2),
-      bad_plane     => table_fault_plane,
-      idle          => idle,
-      boundary      => boundary,
-      plane         => table_plane,
-      column        => table_column,
-      read          => table_read,
-      q             => table_data
+      error              => failed
     );
 
   sequencer : entity work.sweep_sequencer

@@ -31,7 +31,7 @@ class Bench:
         cocotb.start_soon(self._record(dut.trigger, self.triggers))
         cocotb.start_soon(self._record(dut.sync, self.syncs))
         for entity, path in (("sweep_sequencer", dut.dut.sequencer), ("i2c_master", dut.dut.lens),
-                             ("i2c_slave", dut.dut.host), ("plane_table", dut.dut.planes_table)):
+                             ("i2c_slave", dut.dut.host.slave), ("plane_table", dut.dut.host.planes_table)):
             coverage.watch(entity, path.state)
 
     @staticmethod

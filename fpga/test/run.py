@@ -56,6 +56,7 @@ ENTITIES = [
     Bench("test_i2c_slave", "i2c_slave", FAST),
     Bench("test_register_file", "register_file", FAST),
     Bench("test_plane_table", "plane_table", FAST),
+    Bench("test_host_interface", "host_interface", FAST),
     Bench("test_plane_order", "plane_order", {}),
     Bench("test_slot_timer", "slot_timer", FAST),
     Bench("test_sweep_sequencer", "sweep_sequencer", FAST),

@@ -118,6 +118,24 @@ async def plane_table(dut):
 
 
 @cocotb.test()
+async def host_interface(dut):
+    from test_host_interface import Rig, table_of
+    rig = Rig(dut)
+    await rig.begin()
+    await rig.commit(table_of(1, 2))
+    dut.idle.value = 0
+    record = Recorder(scl_in=dut.scl_in, sda_in=dut.sda_in, word_number=dut.word_number, write=dut.write,
+                      commit=dut.commit, pending=dut.pending, boundary=dut.boundary, period=dut.period)
+    await rig.write("period_us", 1200)
+    await rig.write("commit", 1)
+    await cycles(dut, 200)
+    await pulse(dut, dut.boundary)
+    await cycles(dut, 100)
+    keep("host_interface", record.draw("host_interface: a new period, committed, and in use from the end of the sweep",
+                                       vectors=["word_number", "period"]))
+
+
+@cocotb.test()
 async def plane_order(dut):
     from test_plane_order import Rig
     rig = Rig(dut)
