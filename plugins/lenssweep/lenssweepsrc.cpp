@@ -102,6 +102,11 @@ static gboolean start(GstBaseSrc *source)
 static gboolean stop(GstBaseSrc *source)
 {
     auto *self = GST_LENS_SWEEP_SRC(source);
+    self->state->capture->stop();
+    const dff::CaptureCounts counts = self->state->capture->counts();
+    GST_OBJECT_LOCK(self);
+    self->state->counts = counts;
+    GST_OBJECT_UNLOCK(self);
     put_capture(self, nullptr);
     gst_clear_caps(&self->state->clock_caps);
     return TRUE;
@@ -268,7 +273,8 @@ static void gst_lens_sweep_src_class_init(GstLensSweepSrcClass *klass)
         g_param_spec_boxed(
             "stats", "Statistics",
             "Frames since the start: delivered, lost (of those incomplete, and underruns), doubled, "
-            "unlabelled; disagreements, dropped-sweeps, wrong-edges, restarts",
+            "unlabelled; disagreements, dropped-sweeps, wrong-edges, restarts; triggers, where the "
+            "sequencer of the lens counts them",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
     element_class->change_state = change_state;

@@ -6,6 +6,8 @@
 #include "counting_labeller.h"
 #include "trigger_labeller.h"
 
+#include <utility>
+
 namespace dff {
 
 namespace {
@@ -65,8 +67,10 @@ void LineTriggers::start()
                                        : PlaneLabeller::Beginning::UnderWay,
                          started_ns_);
     }
-    if (parts_.lens)
+    if (parts_.lens) {
+        count_ = parts_.lens->frame_count();
         parts_.lens->start();
+    }
     if (parts_.run)
         parts_.run->set(true);
 }
@@ -76,8 +80,10 @@ void LineTriggers::stop() noexcept
     try {
         if (parts_.run)
             parts_.run->set(false);
-        if (parts_.lens)
+        if (parts_.lens) {
             parts_.lens->stop();
+            count_given();
+        }
     } catch (...) {
         fail();
     }
@@ -86,8 +92,27 @@ void LineTriggers::stop() noexcept
 void LineTriggers::check()
 {
     Triggers::check();
-    if (parts_.lens)
-        parts_.lens->check();
+    if (!parts_.lens)
+        return;
+    parts_.lens->check();
+    count_given();
+}
+
+void LineTriggers::count_given()
+{
+    if (!count_)
+        return;
+    const std::uint32_t now = parts_.lens->frame_count();
+    const std::lock_guard lock(mutex_);
+    given_ += static_cast<std::uint32_t>(now - *std::exchange(count_, now));
+}
+
+std::optional<std::uint64_t> LineTriggers::given() const
+{
+    if (!parts_.lens)
+        return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    return given_;
 }
 
 std::uint64_t LineTriggers::wrong_edges() const

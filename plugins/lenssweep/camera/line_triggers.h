@@ -34,15 +34,19 @@ public:
     bool restartable() const override { return parts_.lens || parts_.run; }
     void check() override;
     std::uint64_t wrong_edges() const override;
+    std::optional<std::uint64_t> given() const override;
 
 private:
     LineTriggers(const SweepTiming &timing, FrameNumbers numbers, const Parts &parts,
                  std::unique_ptr<SyncRhythm> rhythm, std::function<void()> on_error);
+    void count_given();
     void listen(const std::stop_token &stop);
 
     Parts parts_;
     std::unique_ptr<SyncRhythm> rhythm_; /* guarded by mutex_; null without a sync line */
     std::int64_t started_ns_ = 0;        /* guarded by mutex_ */
+    std::uint64_t given_ = 0;            /* guarded by mutex_ */
+    std::optional<std::uint32_t> count_; /* the lens's, which began before us and wraps */
     std::jthread listener_;
 };
 

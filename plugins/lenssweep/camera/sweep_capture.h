@@ -24,6 +24,7 @@ struct CaptureCounts {
     std::uint64_t incomplete = 0;  /* frames of which packets are missing; counted as lost as well */
     std::uint64_t underruns = 0;   /* frames for which no buffer was free; likewise */
     std::uint64_t wrong_edges = 0; /* of the sync line */
+    std::uint64_t triggers = 0;    /* as the lens's sequencer counts them, each second and at the end */
     std::uint64_t restarts = 0;    /* of the sequencer, since planes could not be told any more */
 };
 

@@ -31,6 +31,10 @@ public:
      */
     virtual void check();
 
+    /* Triggers that were given since the first start(), by the word of who gives them; empty if they are not
+     * counted there. */
+    virtual std::optional<std::uint64_t> given() const { return std::nullopt; }
+
     /* Edges of the sync line that were not believed. */
     virtual std::uint64_t wrong_edges() const { return 0; }
 

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 /* The capture without GStreamer, with the camera that Aravis simulates in this process. Thread sanitizer sees
  * every lock here; see tests/tsan.sh. */
+#include "lenssweep/camera/line_triggers.h"
 #include "lenssweep/camera/sweep_capture.h"
 
 #include <atomic>
@@ -37,6 +38,20 @@ dff::CapturedPlane next_plane(dff::SweepCapture &capture)
             return std::move(*plane);
     }
 }
+
+/* A lens in the hands of a sequencer that only counts. */
+struct CountingSequencer : dff::SequencedLens {
+    std::uint32_t count = 0;
+
+    void prepare(const dff::LensSweep &) override {}
+    void start() override {}
+    void stop() override {}
+    bool calibrated() const override { return true; }
+    int code(unsigned) const override { return -1; }
+    void check() override {}
+    std::uint32_t sweep_count() override { return count / 6; }
+    std::uint32_t frame_count() override { return count; }
+};
 
 } // namespace
 
@@ -127,6 +142,28 @@ TEST(AravisCamera, is_not_freed_by_the_thread_that_tells_that_it_is_gone)
     camera.reset();
     heartbeat.join();
     EXPECT_EQ(freed_by, std::this_thread::get_id());
+}
+
+TEST(LineTriggers, count_what_the_sequencer_has_given)
+{
+    CountingSequencer lens;
+    lens.count = 0xffff'fff0; /* of those before us */
+    dff::LineTriggers triggers({6, 6'400'000, 38'400'000, 6'000'000},
+                               dff::FrameNumbers(dff::FrameNumbering::GigE16), {&lens, nullptr, nullptr},
+                               [] {});
+    EXPECT_EQ(triggers.given(), 0U);
+    triggers.start();
+    lens.count += 10;
+    triggers.check();
+    EXPECT_EQ(triggers.given(), 10U);
+    lens.count += 10; /* its 32 bits wrap */
+    triggers.stop();
+    EXPECT_EQ(triggers.given(), 20U);
+    lens.count += 100; /* somebody else's */
+    triggers.start();
+    lens.count += 6;
+    triggers.stop();
+    EXPECT_EQ(triggers.given(), 26U);
 }
 
 TEST(SweepCapture, starts_and_stops_as_often_as_wanted)
