@@ -208,6 +208,16 @@ def check_pages(report):
             report.add(f"page of {file.stem} is whole " + " ".join(missing), bool(names) and not missing)
 
 
+def check_constraints(report):
+    """Every port of the top has its pin and its level, and no pin has two."""
+    text = (FPGA / "constraints" / "arty_z7.xdc").read_text(encoding="utf-8")
+    pins = re.findall(r"PACKAGE_PIN (\w+) IOSTANDARD \w+.*\[get_ports (\w+)\]", text)
+    top = (RTL / "lens_sweep_top.vhd").read_text(encoding="utf-8")
+    ports = re.findall(r"^\s*(\w+)\s*: (?:in|out|inout) ", top, re.MULTILINE)
+    report.add("every port of the top has its pin",
+               sorted(port for _, port in pins) == sorted(ports) and len({pin for pin, _ in pins}) == len(ports))
+
+
 def check_mutations(report, every):
     """Breaks a line of an entity and sees its bench fail."""
     listed = tomllib.loads((TEST / "mutations.toml").read_text(encoding="utf-8"))["mutation"]
@@ -274,6 +284,8 @@ def main():
         run_command(report, "generated files are current", [sys.executable, str(FPGA / "generate.py"), "--check"])
     if options.only in "pages":
         check_pages(report)
+    if options.only in "constraints":
+        check_constraints(report)
     if options.only in "synthesis":
         check_synthesis(report)
         check_elaboration(report)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""The bytes that the C++ driver sends, recorded by its unit test, give the sweep they were meant to give."""
+"""The bytes that the C++ driver sends, recorded by its unit test, give the sweep they were meant to give; so do the
+commands of the README."""
 
+import re
 from pathlib import Path
 
 import cocotb
@@ -11,6 +13,7 @@ from sweep_model import Plane, Table, expect
 from words import DEFAULT, WORD
 
 SWEEPS = 3
+TEST = Path(__file__).resolve().parent
 
 
 def code(volts):
@@ -21,7 +24,7 @@ def code(volts):
 def recording():
     """(the table that was meant, the lines to play)."""
     table, planes, lines = None, [], []
-    for line in Path(__file__).with_name("contract.txt").read_text(encoding="utf-8").splitlines():
+    for line in (TEST / "contract.txt").read_text(encoding="utf-8").splitlines():
         kind, *rest = line.split()
         fields = dict(item.split("=") for item in rest if "=" in item)
         if kind == "table":
@@ -82,3 +85,21 @@ async def expectation(bench, table, what):
     older, bench.syncs[:] = bench.syncs[:syncs], bench.syncs[syncs:]
     bench.check(table, expect(table, SWEEPS, TICK_CYCLES, BIT_CYCLES))
     bench.syncs[:] = older + bench.syncs
+
+
+@cocotb.test()
+async def commands_of_the_readme_give_a_sweep(dut):
+    bench = Bench(dut)
+    await bench.reset()
+    readme = (TEST.parent / "README.md").read_text(encoding="utf-8")
+    for action, address, word, value, answer in re.findall(
+            r"^i2c(set|get) -y 1 (\w+) (\w+) (?:(\w+) )?w *(?:# (0x\w+))?", readme, re.MULTILINE):
+        assert int(address, 0) == bench.host.address
+        if action == "set":
+            await bench.host.write_word(int(word, 0), int(value, 0))
+        else:
+            assert await bench.host.read_word(int(word, 0)) == int(answer, 0)
+    table = Table([Plane(340, 9, 300, 90), Plane(560, 9, 600, 90)])
+    await bench.until_triggers(3, 30_000)
+    await bench.wait_us(150)
+    bench.check(table, expect(table, 1, TICK_CYCLES, BIT_CYCLES))
