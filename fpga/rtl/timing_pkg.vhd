@@ -142,11 +142,7 @@ package body timing_pkg is
   ) return unsigned is
   begin
 
-    if (active_low = '1') then
-      return opto_on;
-    end if;
-
-    return opto_off;
+    return leading_delay(not active_low, opto_on, opto_off);
 
   end function trailing_delay;
 

@@ -18,9 +18,10 @@ def short_table(planes=3, **changes):
     return Table([Plane(100 + number, 10, 500 + number, 30) for number in range(planes)], **settings)
 
 
-async def started(bench, table, *control):
-    """After a reset, with the table in use and sweeping."""
+async def started(bench, table, *control, fault=lambda lens: None):
+    """After a reset, with the table in use and sweeping. fault: what the lens driver will do wrong."""
     await bench.reset()
+    fault(bench.lens)
     await table.write(bench.host)
     await bench.control("enable", *control)
     return bench
@@ -104,22 +105,16 @@ async def nack_stops_the_trigger(dut):
     bench = Bench(dut)
     table = short_table()
     for transfer, byte, triggers in ((0, 0, 0), (2, 1, 0), (5, 2, 0), (8, 0, 1)):
-        await bench.reset()
-        bench.lens.nack_at[transfer] = byte
-        await table.write(bench.host)
-        await bench.control("enable")
+        await started(bench, table, fault=lambda lens: lens.nack_at.update({transfer: byte}))
         await failed_with(bench, "lens_nack", triggers)
         await starts_anew(bench, table)
 
 
 @cocotb.test()
 async def stretched_clock_within_the_limit_moves_no_trigger(dut):
-    table = short_table()
     bench = Bench(dut)
-    await bench.reset()
-    bench.lens.stretch_at[4] = 15 * TICK_CYCLES * CLOCK_PS
-    await table.write(bench.host)
-    await bench.control("enable")
+    table = short_table()
+    await started(bench, table, fault=lambda lens: lens.stretch_at.update({4: 15 * TICK_CYCLES * CLOCK_PS}))
     await bench.until_triggers(4, 6_000)
     await bench.wait_us(100)
     expected = expect(table, 1, TICK_CYCLES, BIT_CYCLES)
@@ -130,12 +125,9 @@ async def stretched_clock_within_the_limit_moves_no_trigger(dut):
 
 @cocotb.test()
 async def stretched_clock_beyond_the_limit_is_an_error(dut):
-    table = short_table()
     bench = Bench(dut)
-    await bench.reset()
-    bench.lens.stretch_at[4] = 150 * TICK_CYCLES * CLOCK_PS
-    await table.write(bench.host)
-    await bench.control("enable")
+    table = short_table()
+    await started(bench, table, fault=lambda lens: lens.stretch_at.update({4: 150 * TICK_CYCLES * CLOCK_PS}))
     await failed_with(bench, "lens_stretch", 0)
     await starts_anew(bench, table)
 
@@ -145,10 +137,7 @@ async def stretched_clock_that_delays_a_code_gives_no_late_trigger(dut):
     bench = Bench(dut)
     table = short_table()
     for transfer, triggers in ((4, 0), (8, 1)):
-        await bench.reset()
-        bench.lens.stretch_at[transfer] = 60 * TICK_CYCLES * CLOCK_PS
-        await table.write(bench.host)
-        await bench.control("enable")
+        await started(bench, table, fault=lambda lens: lens.stretch_at.update({transfer: 60 * TICK_CYCLES * CLOCK_PS}))
         await failed_with(bench, "late", triggers)
         assert await bench.host.read_word(WORD["error_plane"]) == 0
         await starts_anew(bench, table)
@@ -157,12 +146,9 @@ async def stretched_clock_that_delays_a_code_gives_no_late_trigger(dut):
 @cocotb.test()
 async def sda_held_for_a_while_is_freed_by_clocks(dut):
     """A slave that was cut off in a read: after a start from standstill the sweep runs as if nothing had been."""
-    table = short_table()
     bench = Bench(dut)
-    await bench.reset()
-    await table.write(bench.host)
-    bench.lens.hold(5)
-    await bench.control("enable")
+    table = short_table()
+    await started(bench, table, fault=lambda lens: lens.hold(5))
     await bench.until_triggers(3, 6_000)
     await bench.wait_us(100)
     assert await bench.errors() == set()
@@ -171,12 +157,9 @@ async def sda_held_for_a_while_is_freed_by_clocks(dut):
 
 @cocotb.test()
 async def sda_stuck_low_is_an_error(dut):
-    table = short_table()
     bench = Bench(dut)
-    await bench.reset()
-    await table.write(bench.host)
-    bench.lens.hold(None)
-    await bench.control("enable")
+    table = short_table()
+    await started(bench, table, fault=lambda lens: lens.hold(None))
     await failed_with(bench, "lens_stuck", 0)
     bench.lens.release()
     await starts_anew(bench, table)
@@ -200,12 +183,13 @@ async def foreign_driver_on_the_lens_bus_is_an_error(dut):
 
 @cocotb.test()
 async def scl_held_low_is_an_error(dut):
-    table = short_table()
     bench = Bench(dut)
-    await bench.reset()
-    await table.write(bench.host)
-    dut.lens_scl_low.value = 1
-    await bench.control("enable")
+    table = short_table()
+
+    def hold_clock(lens):
+        lens.scl_low.value = 1
+
+    await started(bench, table, fault=hold_clock)
     await failed_with(bench, "lens_stretch", 0)
     dut.lens_scl_low.value = 0
     await starts_anew(bench, table)
