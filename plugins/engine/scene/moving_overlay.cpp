@@ -36,7 +36,7 @@ template <typename Pixel> cv::Mat_<Pixel> warp_picture(const cv::Mat_<Pixel> &pi
     if (!view.warped())
         return picture;
     cv::Mat_<Pixel> warped;
-    cv::warpAffine(picture, warped, view.warp, picture.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
+    cv::warpAffine(picture, warped, view.warp, picture.size(), cv::INTER_LANCZOS4, cv::BORDER_REFLECT);
     return warped;
 }
 
