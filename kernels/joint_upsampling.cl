@@ -3,10 +3,11 @@
  *
  * u at full resolution from the low u (Kopf et al. 2007): the mean of the 4x4 low cells around a pixel, weighted by
  *
- *     max(0, 1 - |G(p) - A(q)|_1 / 60)^2 exp(-d^2 / (2 1.5^2)) + 1e-5,  d in low cells,
+ *     max(0, 1 - |G(p) - A(q)|_1 / 60)^2 exp(-d^2 / (2 1.5^2)) (1 + 4 u(q) / (N - 1)) + 1e-5,  d in low cells,
  *
  * where these cells differ by half a plane or more, bilinear elsewhere. A is the guide at the final u, and G its like at
- * full resolution: the planes blended at the nearer u around the pixel. Only pixels near depth edges need G.
+ * full resolution: the planes blended at the nearer u around the pixel. Only pixels near depth edges need G. What is
+ * farther counts more, since blur makes what is near grow over its edges.
  *
  * All pixels between four low cells have the same 4x4 cells: such a square of SCALE x SCALE pixels is worked on at
  * once, in the parts of plane_blend.cl.
@@ -129,6 +130,7 @@ __kernel void upsample_depth(__global const float *u, __global const float *near
                 depth[(size_t)y * width + x] = codes[0];
         return;
     }
+    const float farness = 4.0f / (planes - 1);
     Places places;
     find_places(&places);
     size_t rows[4];
@@ -162,7 +164,7 @@ __kernel void upsample_depth(__global const float *u, __global const float *near
                     const lanes difference = fabs(own.red - guide[cell]) + fabs(own.green - guide[picture + cell]) +
                                              fabs(own.blue - guide[2 * picture + cell]);
                     const lanes likeness = max(1.0f - difference * (1.0f / TOLERANCE), 0.0f);
-                    const lanes weight = likeness * likeness * places.nearness[part][k] + 1e-5f;
+                    const lanes weight = likeness * likeness * places.nearness[part][k] * (1.0f + farness * u[cell]) + 1e-5f;
                     weights += weight;
                     sum += weight * u[cell];
                 }

@@ -25,8 +25,8 @@ SECONDS_EACH = 300
 COLUMNS = (('psnr', 'PSNR dB', '.2f'), ('mae', 'MAE', '.2f'), ('off_by_plane', 'off %', '.2f'),
            ('aif_psnr', 'AIF dB', '.2f'), ('aif_ssim', 'AIF SSIM', '.4f'))
 
-# method: properties of dffdepth as in a pipeline; blur_step: pixels of blur a plane.
-Conditions = collections.namedtuple('Conditions', 'method noise breathing blur_step')
+# method: properties of dffdepth as in a pipeline; blend: of aifcompose, '' is its own choice; blur_step: pixels of blur a plane.
+Conditions = collections.namedtuple('Conditions', 'method noise breathing blur_step blend', defaults=[''])
 
 
 class FileScene:
@@ -76,11 +76,12 @@ def run_elements(scene, conditions, folder):
     """Plane positions and the all-in-focus image (BGR) that the pipeline makes of a scene."""
     depth, aif = folder / 'depth', folder / 'aif'
     align = 'focalstackalign !' if conditions.breathing else ''
+    blend = f'blend={conditions.blend}' if conditions.blend else ''
     run(f'''lenssweeptestsrc num-buffers={PLANES} planes={PLANES} {scene.source} blur-step={conditions.blur_step}
         noise={conditions.noise} breathing={conditions.breathing} ! {caps(scene.size)} ! focalstackmux ! {align} tee name=s
         s. ! queue ! dffdepth {conditions.method} unit=index ! tee name=d  d. ! queue ! filesink location={depth}
         d. ! queue ! c.depth  s. ! queue ! c.stack
-        aifcompose name=c ! videoconvert ! video/x-raw,format=BGR ! filesink location={aif}''')
+        aifcompose name=c {blend} ! videoconvert ! video/x-raw,format=BGR ! filesink location={aif}''')
     shape = scene.size[::-1]
     return to_planes(read_rows(depth, shape, np.dtype('<u2'), 1)[..., 0]), read_rows(aif, shape, np.dtype('u1'), 3)
 
@@ -148,6 +149,7 @@ def parse_arguments():
     parser.add_argument('data', type=pathlib.Path, help='folder of scenes')
     parser.add_argument('--method', nargs='+', default=[], help="dffdepth's method (default: its own choice)")
     parser.add_argument('--properties', default='', help='more properties of dffdepth, as in a pipeline')
+    parser.add_argument('--blend', default='', help="aifcompose's blend (default: its own choice)")
     parser.add_argument('--shapes', nargs='+', type=int, metavar='SEED', help='made scenes instead of those of the folder')
     parser.add_argument('--size', type=size_of, default=(640, 480), help='of made scenes (default: 640x480)')
     parser.add_argument('--breathing', nargs='+', type=float, default=[0], metavar='PART',
@@ -166,7 +168,7 @@ def main():
     else:
         scenes = scenes_in(arguments.data.resolve(), arguments.scenes)
     methods = [f'method={name}' for name in arguments.method] or ['']
-    runs = [Conditions(f'{method} {arguments.properties}'.strip(), noise, breathing, arguments.blur_step)
+    runs = [Conditions(f'{method} {arguments.properties}'.strip(), noise, breathing, arguments.blur_step, arguments.blend)
             for method in methods for breathing in arguments.breathing for noise in arguments.noise]
     total, done, results = len(runs) * len(scenes), 0, []
     for conditions in runs:

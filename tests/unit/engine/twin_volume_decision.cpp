@@ -290,8 +290,9 @@ Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, fl
                 for (size_t c = 0; c < 3; c++)
                     difference += std::abs(own[c] / own_weights - low(guide[c], i, j));
                 const double likeness = std::max(1.0 - difference / 60.0, 0.0);
-                const double weight =
-                    likeness * likeness * std::exp(-((ax - i) * (ax - i) + (ay - j) * (ay - j)) / 4.5) + 1e-5;
+                const double nearness = std::exp(-((ax - i) * (ax - i) + (ay - j) * (ay - j)) / 4.5);
+                const double farness = 1.0 + 4.0 * low(u, i, j) / (planes[0].planes - 1.0);
+                const double weight = likeness * likeness * nearness * farness + 1e-5;
                 weights += weight;
                 sum += weight * low(u, i, j);
             }
