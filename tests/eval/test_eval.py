@@ -86,11 +86,13 @@ class Elements(unittest.TestCase):
         self.assertGreater(found['psnr'], 15)
         self.assertNotIn('aif_psnr', found)
 
-    def test_truth_follows_the_middle_plane(self):
-        picture = np.tile(np.arange(1001, dtype=np.uint16), (3, 1))
-        moved = evaluate.as_middle_plane(picture, 0.9, evaluate.cv2.INTER_NEAREST)
-        self.assertEqual(moved[1, 500], 500)
-        self.assertAlmostEqual((moved[1, 600] - 500) * (1 + 0.9 / 18), 100, delta=1)
+    def test_breathing_undone_leaves_depth_where_the_truth_is(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder)
+            make_scene(scene)
+            still, undone = (evaluate.score_scene(evaluate.FileScene(scene), evaluate.Conditions('', 'none', breathing, 2))
+                             for breathing in (0, 0.03))
+        self.assertGreater(undone['psnr'], still['psnr'] - 0.7)
 
 
 if __name__ == '__main__':
