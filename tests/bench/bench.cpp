@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 
-/* dff-bench REPORT.md REPORT.json [--quick]: what a stack costs, beside copies and other people's ways to the
- * same end. Everything runs in one process, in turn, so that ratios hold on a machine that is not quiet. */
+/* dff-bench REPORT.md REPORT.json [--quick|--linearity]: what a stack costs, beside copies and other people's
+ * ways to the same end. Everything runs in one process, in turn, so that ratios hold on a machine that is not
+ * quiet. --quick: 1920x1080 alone; --linearity: ours alone, from VGA to 4K and from 4 planes to 32. */
 #include "bench_stack.h"
 #include "engine/aif_composer.h"
 #include "plain_focus.h"
@@ -151,7 +152,8 @@ public:
     {
         json_ << "\n]\n";
         markdown_ << "\n## Linearity\n\nMilliseconds a million pixels and plane; flat is linear.\n\n"
-                  << "| | N | paper and AIF | volume and AIF |\n|---|---|---|---|\n"
+                  << "| | N | paper and AIF | its processor time | volume and AIF | its processor time |\n"
+                  << "|---|---|---|---|---|---|\n"
                   << linearity_.str();
     }
 
@@ -183,8 +185,10 @@ private:
         const double paper = median(rows[1].wall), volume = median(rows[2].wall);
         const double megapixel_planes = 1e-6 * c.width * c.height * c.planes;
         linearity_ << "| " << c.width << "x" << c.height << " | " << c.planes << " | "
-                   << rounded(paper / megapixel_planes) << " | " << rounded(volume / megapixel_planes)
-                   << " |\n";
+                   << rounded(paper / megapixel_planes) << " | "
+                   << rounded(median(rows[1].cpu) / megapixel_planes) << " | "
+                   << rounded(volume / megapixel_planes) << " | "
+                   << rounded(median(rows[2].cpu) / megapixel_planes) << " |\n";
         const auto processor_ratio = [&](size_t i, size_t ours) {
             return rounded(median(rows[i].cpu) / median(rows[ours].cpu));
         };
@@ -271,23 +275,24 @@ void measure(const Case &c, unsigned rounds, Report &report)
 
 int main(int count, char **arguments)
 {
-    if (count < 3) {
-        std::cerr << "usage: dff-bench REPORT.md REPORT.json [--quick]\n";
+    const std::string_view option = count > 3 ? arguments[3] : "";
+    if (count < 3 || (!option.empty() && option != "--quick" && option != "--linearity")) {
+        std::cerr << "usage: dff-bench REPORT.md REPORT.json [--quick|--linearity]\n";
         return 2;
     }
-    const bool quick = count > 3 && std::strcmp(arguments[3], "--quick") == 0;
     std::vector<Case> cases;
-    for (const auto &[width, height] : {std::pair(1280u, 720u), {1920u, 1080u}, {3840u, 2160u}})
-        for (const uint32_t planes : {6u, 10u})
-            if (!quick || width == 1920)
-                cases.push_back({width, height, planes, true});
-    if (!quick)
+    if (option != "--linearity")
+        for (const auto &[width, height] : {std::pair(1280u, 720u), {1920u, 1080u}, {3840u, 2160u}})
+            for (const uint32_t planes : {6u, 10u})
+                if (option.empty() || width == 1920)
+                    cases.push_back({width, height, planes, true});
+    if (option != "--quick")
         for (const auto &[width, height] :
              {std::pair(640u, 480u), {1280u, 720u}, {1920u, 1080u}, {3840u, 2160u}})
-            for (const uint32_t planes : {4u, 16u, 32u})
+            for (const uint32_t planes : {4u, 8u, 16u, 32u})
                 cases.push_back({width, height, planes, false});
 
     Report report(arguments[1], arguments[2]);
     for (const Case &c : cases)
-        measure(c, quick ? 5 : 9, report);
+        measure(c, option.empty() ? 9 : 5, report);
 }

@@ -3,10 +3,13 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 """live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling]: a live simulated
 camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown how many stacks
-were late or dropped, and how long after its last plane a stack's depth left. Run it in `meson devenv -C build`, on a
+were late or dropped, how many of these while a hypervisor took the processors away, and how long after its last plane a
+stack's depth left. Run it in `meson devenv -C build`, on a
 machine that has nothing else to do; five minutes (--seconds 300) are the proof, ten seconds a trial."""
 import argparse
+import bisect
 import collections
+import threading
 import time
 
 import gi
@@ -14,7 +17,8 @@ import gi
 gi.require_version("Gst", "1.0")
 from gi.repository import Gst
 
-BUCKET_MS = 5
+BUCKETS_MS = [*range(0, 100, 5), *range(100, 200, 25), *range(200, 500, 100), 500, 1000, 2000, 5000, float("inf")]
+STOLEN_SHARE = 0.02  # of a second's processor time, above which the machine was not ours
 
 
 def pipeline_text(options):
@@ -65,25 +69,68 @@ class Latency:
         print(f"\nLast plane's arrival to depth, ms: median {at(0.5):.1f}, 95 % {at(0.95):.1f}, "
               f"99 % {at(0.99):.1f}, longest {ordered[-1]:.1f}, the first {self.milliseconds[0]:.1f}\n")
         print("| ms | stacks |\n|---|---|")
-        buckets = collections.Counter(int(value // BUCKET_MS) for value in ordered)
-        for bucket in range(min(buckets), max(buckets) + 1):
-            if buckets[bucket]:
-                print(f"| {bucket * BUCKET_MS} to {(bucket + 1) * BUCKET_MS} | {buckets[bucket]} |")
+        buckets = collections.Counter(bisect.bisect_right(BUCKETS_MS, value) for value in ordered)
+        for bucket in sorted(buckets):
+            print(f"| {BUCKETS_MS[bucket - 1]} to {BUCKETS_MS[bucket]} | {buckets[bucket]} |")
+
+
+def processor_ticks():
+    """All ticks of all processors so far, and those that the hypervisor gave to others."""
+    with open("/proc/stat") as stat:
+        ticks = [int(word) for word in stat.readline().split()[1:9]]
+    return sum(ticks), ticks[7]
+
+
+class StolenTime:
+    """What the hypervisor took away, second by second."""
+
+    def __init__(self):
+        self.ends, self.shares = [], []
+        self.stop = threading.Event()
+        self.first = self.last = processor_ticks()
+        self.thread = threading.Thread(target=self.sample, daemon=True)
+        self.thread.start()
+
+    def sample(self):
+        while not self.stop.wait(1.0):
+            self.take()
+
+    def take(self):
+        now = processor_ticks()
+        self.ends.append(time.monotonic())
+        self.shares.append((now[1] - self.last[1]) / max(now[0] - self.last[0], 1))
+        self.last = now
+
+    def print(self, late):
+        self.stop.set()
+        self.thread.join()
+        self.take()
+        robbed = sum(share > STOLEN_SHARE for share in self.shares)
+        late_then = sum(self.shares[min(bisect.bisect_left(self.ends, moment), len(self.ends) - 1)] > STOLEN_SHARE
+                        for moment in late)
+        share = (self.last[1] - self.first[1]) / max(self.last[0] - self.first[0], 1)
+        print(f"hypervisor: {share:.1%} of the processor time stolen, more than {STOLEN_SHARE:.0%} in {robbed} of "
+              f"{len(self.shares)} seconds; {late_then} of the {len(late)} late pictures fell in these")
 
 
 def run(pipeline):
+    """Until the end; returns when pictures were too late for the sink."""
+    late = []
     bus = pipeline.get_bus()
     pipeline.set_state(Gst.State.PLAYING)
     while True:
-        message = bus.timed_pop_filtered(
-            Gst.CLOCK_TIME_NONE, Gst.MessageType.EOS | Gst.MessageType.ERROR | Gst.MessageType.LATENCY)
+        message = bus.timed_pop_filtered(Gst.CLOCK_TIME_NONE, Gst.MessageType.EOS | Gst.MessageType.ERROR |
+                                         Gst.MessageType.LATENCY | Gst.MessageType.QOS)
         if message.type == Gst.MessageType.LATENCY:
             pipeline.recalculate_latency()
+        elif message.type == Gst.MessageType.QOS:
+            if message.src.get_name() == "sink":
+                late.append(time.monotonic())
         elif message.type == Gst.MessageType.ERROR:
             error, _ = message.parse_error()
             raise SystemExit(error.message)
         else:
-            return
+            return late
 
 
 def main():
@@ -99,8 +146,9 @@ def main():
     Gst.init(None)
     pipeline = Gst.parse_launch(pipeline_text(options))
     latency = Latency(pipeline, options.planes, options.window == "rolling")
+    stolen = StolenTime()
     start, start_cpu = time.monotonic(), time.process_time()
-    run(pipeline)
+    late = run(pipeline)
     passed, cpu = time.monotonic() - start, time.process_time() - start_cpu
 
     stacks = int(options.seconds * options.rate)
@@ -112,6 +160,7 @@ def main():
           f"for, {len(latency.milliseconds)} depth maps, {rendered} pictures in time, {dropped} late and dropped; "
           f"{len(latency.milliseconds) / passed:.1f} depth maps/s over {passed:.1f} s, {cpu / passed:.2f} CPUs busy")
     print(f"mux: {pipeline.get_by_name('mux').get_property('stats').to_string()}")
+    stolen.print(late)
     latency.print()
     pipeline.set_state(Gst.State.NULL)
 

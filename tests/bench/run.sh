@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 #
-# run.sh [--quick] [FOLDER]: times a stack from luma to all-in-focus picture, stage by stage, beside a memory copy and
+# run.sh [--quick|--linearity] [FOLDER]: times a stack from luma to all-in-focus picture, stage by stage, beside a memory copy and
 # other ways to the same end. Writes bench.md, bench.json and bench.svg to FOLDER (bench-results). Ratios hold on a busy
-# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds. live.py beside it is the live proof.
+# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds; --linearity: from VGA to 4K and from 4
+# planes to 32, without the others. live.py beside it is the live proof.
 set -euo pipefail
-quick=()
-if [ "${1:-}" = --quick ]; then
-    quick=(--quick)
+part=()
+if [[ "${1:-}" = --* ]]; then
+    part=("$1")
     shift
 fi
 folder=$(realpath -m "${1:-bench-results}")
@@ -22,7 +23,7 @@ ninja -C build-release tests/bench/dff-bench tests/bench/dff-first-stack
 
 say "Measuring"
 enter build-release
-build-release/tests/bench/dff-bench "$folder/bench.md" "$folder/bench.json" "${quick[@]}"
+build-release/tests/bench/dff-bench "$folder/bench.md" "$folder/bench.json" "${part[@]}"
 {
     printf '\n## First stack after start, warm kernel caches\n\n'
     for method in paper volume; do
