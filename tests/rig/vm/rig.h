@@ -71,4 +71,22 @@ inline void fail_i2c_transfers(int count)
     write_file("/sys/module/rig_i2c/parameters/nack", std::to_string(count));
 }
 
+/* Codes that the log shows committed to the lens, in order. */
+inline std::vector<int> committed_codes()
+{
+    std::vector<int> codes;
+    int low = 0;
+    int high = 0;
+    for (const auto &line : i2c_log()) {
+        const int value = std::stoi(line.substr(line.find('=') + 1), nullptr, 16);
+        if (line.starts_with("77 04="))
+            low = value >> 6;
+        else if (line.starts_with("77 08="))
+            high = value;
+        else if (line == "77 09=02")
+            codes.push_back(high << 2 | low);
+    }
+    return codes;
+}
+
 } // namespace rig

@@ -28,24 +28,6 @@ std::unique_ptr<dff::Lens> open(const std::string &uri)
     return lens;
 }
 
-/* Codes that the log shows committed to the lens, in order. */
-std::vector<int> committed_codes()
-{
-    std::vector<int> codes;
-    int low = 0;
-    int high = 0;
-    for (const auto &line : rig::i2c_log()) {
-        const int value = std::stoi(line.substr(line.find('=') + 1), nullptr, 16);
-        if (line.starts_with("77 04="))
-            low = value >> 6;
-        else if (line.starts_with("77 08="))
-            high = value;
-        else if (line == "77 09=02")
-            codes.push_back(high << 2 | low);
-    }
-    return codes;
-}
-
 } // namespace
 
 TEST(Sequencer, table_is_written_and_reads_back)
@@ -98,7 +80,7 @@ TEST(LensDriver, codes_of_a_sweep_are_committed_in_order)
             expected.push_back(lens->code(plane));
         }
     }
-    EXPECT_EQ(committed_codes(), expected);
+    EXPECT_EQ(rig::committed_codes(), expected);
     EXPECT_TRUE(std::is_sorted(expected.begin(), expected.begin() + 6, std::greater<>()));
     lens->stop();
     EXPECT_EQ(rig::i2c_log().back(), "77 03=00");
@@ -111,7 +93,7 @@ TEST(LensDriver, transfers_that_fail_twice_are_tried_again)
     lens->start();
     rig::fail_i2c_transfers(2);
     dynamic_cast<dff::SteppedLens &>(*lens).move_to(1);
-    EXPECT_EQ(committed_codes(), (std::vector<int>{lens->code(1)}));
+    EXPECT_EQ(rig::committed_codes(), (std::vector<int>{lens->code(1)}));
 }
 
 TEST(LensDriver, transfers_that_keep_failing_end_in_an_error_and_a_lens_asleep)
@@ -121,7 +103,7 @@ TEST(LensDriver, transfers_that_keep_failing_end_in_an_error_and_a_lens_asleep)
     lens->start();
     rig::fail_i2c_transfers(3);
     EXPECT_THROW(dynamic_cast<dff::SteppedLens &>(*lens).move_to(1), dff::LensError);
-    EXPECT_EQ(committed_codes(), std::vector<int>{});
+    EXPECT_EQ(rig::committed_codes(), std::vector<int>{});
     EXPECT_EQ(rig::i2c_log().back(), "77 03=00");
 }
 
