@@ -7,6 +7,7 @@ import hashlib
 import os
 import pathlib
 import re
+import select
 import subprocess
 import tempfile
 import time
@@ -68,6 +69,38 @@ class Receivers(unittest.TestCase):
                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=PATIENCE, check=True, text=True)
                     self.assertEqual(len(re.findall('^0,', played.stdout, re.MULTILINE)), 3)
                     self.assertNotRegex(played.stderr, 'corrupt|conceal')
+
+    def test_ffplay_shows_pictures_to_an_ordinary_user(self):
+        with Server(RIG) as server, tempfile.TemporaryDirectory() as home:
+            os.chmod(home, 0o777)
+            player = subprocess.Popen(
+                ['setpriv', '--reuid=nobody', '--regid=nogroup', '--clear-groups', 'env', '-i', f'HOME={home}', f'PATH={os.defpath}',
+                 'SDL_VIDEODRIVER=dummy', 'SDL_AUDIODRIVER=dummy', 'ffplay', '-stats', '-analyzeduration', '500000',
+                 '-rtsp_transport', 'udp', server.url('/hue')], stderr=subprocess.PIPE, text=True)
+            try:
+                # Its clock of the pictures it shows, beside what it is late: "  1.25 M-V: -0.035 fd= ...".
+                clock = self.first_match(player.stderr, r'(\d+\.\d+) M-V: +-?\d', lambda match: float(match.group(1)) > 0.5)
+                self.assertIsNotNone(clock, 'ffplay has shown nothing')
+            finally:
+                player.kill()
+                player.wait()
+                player.stderr.close()
+
+    @staticmethod
+    def first_match(stream, pattern, wanted):
+        """The first wanted match in what a program writes; None at its end or when patience ends."""
+        text, end = '', time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            if not select.select([stream], [], [], 1)[0]:
+                continue
+            piece = os.read(stream.fileno(), 4096).decode(errors='replace')
+            if not piece:
+                return None
+            text = (text + piece)[-8192:]
+            for match in re.finditer(pattern, text):
+                if wanted(match):
+                    return match
+        return None
 
     @unittest.skipIf('DFF_PRELOAD' in os.environ, 'Python does not load what is built with sanitizers')
     def test_receive_py_gives_millimetres(self):
