@@ -130,11 +130,15 @@ def measure(before, after):
     }
 
 
-def plot(rows, picture):
+def load_pyplot():
+    """To be called before GStreamer loads its plug-ins, whose libraries Matplotlib's do not bear."""
     import matplotlib
     matplotlib.use('svg')
-    import matplotlib.pyplot as plt
+    import matplotlib.pyplot
+    return matplotlib.pyplot
 
+
+def plot(plt, rows, picture):
     figure, axes = plt.subplots(2, 3, figsize=(12, 8))
     axes = axes.flat
     for axis, column in zip(axes, ('median D', '95 % D', 'off by 1 D, %', 'median mm', '95 % mm', 'holes wrong, %')):
@@ -150,6 +154,7 @@ def plot(rows, picture):
 
 
 def main():
+    plt = load_pyplot() if len(sys.argv) > 1 else None
     Gst.init(None)
     frames = scene(52)
     rows = []
@@ -163,8 +168,8 @@ def main():
     for codec, colours, rate, row in rows:
         print(f'| {codec} | {"hue" if colours is OurHue else "published"} | {rate:.0f} |',
               ' | '.join(f'{value:.3g}' for value in row.values()), '|')
-    if len(sys.argv) > 1:
-        plot(rows, sys.argv[1])
+    if plt:
+        plot(plt, rows, sys.argv[1])
 
 
 if __name__ == '__main__':
