@@ -3,7 +3,7 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 """Many clients and rude ones, before a client that must notice nothing, on a server whose memory must not grow.
 
-DFF_RTSP_CYCLES (10) and DFF_RTSP_SECONDS (2) scale it; by hand, try 100 and 60.
+DFF_RTSP_CYCLES (10) and DFF_RTSP_SECONDS (2) scale it; by hand, try 100 and 60, and fuzz.sh for five minutes of rudeness.
 """
 import os
 import random
