@@ -95,7 +95,7 @@ inline void statistics_of_64(__global const uchar *stack, __global const ulong2 
         darkest = luma < darkest ? luma : darkest;
         brightest = luma > brightest ? luma : brightest;
     }
-    *(__global lanes32 *)mean = mean_of(even, planes) | mean_of(odd, planes) << (ushort)8;
+    *(__global byte_pairs *)mean = mean_of(even, planes) | mean_of(odd, planes) << (ushort)8;
 
     const uchar64 bins_between = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT);
     const long8 many = __builtin_astype(bins_between >= most_bins, long8);
