@@ -3,7 +3,9 @@
 #include "proofs.h"
 
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 using namespace dff;
 using namespace std::chrono_literals;
@@ -16,6 +18,15 @@ size_t entries(const char *folder)
 {
     const std::filesystem::directory_iterator begin(folder);
     return static_cast<size_t>(std::distance(begin, std::filesystem::directory_iterator()));
+}
+
+/* Kilobytes of this process in memory. */
+long resident()
+{
+    long pages = 0;
+    std::ifstream statm("/proc/self/statm");
+    statm >> pages >> pages;
+    return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
 } // namespace
@@ -39,6 +50,7 @@ TEST(Lifecycle, starting_and_stopping_leaves_nothing_behind)
     WatchedStream stream(bench.source() + sink);
     size_t threads = 0;
     size_t files = 0;
+    long memory = 0;
     for (int cycle = 0; cycle < cycles; cycle++) {
         const uint64_t before = stream.watched().frames;
         stream.play();
@@ -48,10 +60,13 @@ TEST(Lifecycle, starting_and_stopping_leaves_nothing_behind)
         if (cycle == 1) {
             threads = entries("/proc/self/task");
             files = entries("/proc/self/fd");
+            memory = resident();
         }
     }
-    std::printf("%d cycles, %lu frames, %lu wrong\n", cycles, stream.watched().frames,
-                stream.watched().wrong);
+    std::printf(
+        "%d cycles, %lu frames, %lu wrong; threads %zu to %zu, files %zu to %zu, resident %ld to %ld kB\n",
+        cycles, stream.watched().frames, stream.watched().wrong, threads, entries("/proc/self/task"), files,
+        entries("/proc/self/fd"), memory, resident());
     EXPECT_EQ(stream.watched().wrong, 0U) << stream.watched().first_wrong;
     EXPECT_LE(entries("/proc/self/task"), threads);
     EXPECT_LE(entries("/proc/self/fd"), files);
