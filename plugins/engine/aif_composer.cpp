@@ -32,8 +32,9 @@ cl_int2 size_of(const StackShape &shape)
 
 AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape)
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
-      stack_(queue_, shape), in_strips_(device_->kernel_style() == KernelStyle::Tiles &&
-                                        shape.format != PixelFormat::Gray16 && shape.width <= most_columns),
+      stack_(queue_, shape), depth_(queue_), picture_(queue_),
+      in_strips_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16 &&
+                 shape.width <= most_columns),
       noise_(queue_, shape, 2), positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
       encoder_(DepthEncoder::index(shape.planes))
 {
@@ -93,14 +94,8 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
                           std::span<std::byte> picture, std::span<const RowLayout> layout)
 {
     translate_errors(*device_, [&] {
-        const cl_mem_flags placement = device_->is_cpu() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-        auto *depth_memory =
-            const_cast<std::byte *>(depth.memory.data()); /* only read, as CL_MEM_READ_ONLY says */
-        const Pictures pictures{
-            {device_->context(), CL_MEM_READ_ONLY | placement, depth.memory.size(), depth_memory},
-            {device_->context(), CL_MEM_READ_WRITE | placement, picture.size(), picture.data()},
-            depth.stride / sizeof(cl_ushort)};
-
+        const Pictures pictures{depth_.upload(depth.memory), picture_.target(picture),
+                                depth.stride / sizeof(cl_ushort)};
         stack_.assign(stack);
         if (blend == Blend::Soft)
             noise_.run(stack_);
@@ -110,8 +105,7 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
             compose_strips(pictures, layout, blend);
         else
             compose_pixels(pictures, layout, blend);
-        if (!device_->is_cpu())
-            queue_.commands().enqueueReadBuffer(pictures.output, CL_FALSE, 0, picture.size(), picture.data());
+        picture_.download(picture);
         times_ = queue_.finish();
     });
 }

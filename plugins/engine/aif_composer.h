@@ -60,6 +60,7 @@ private:
     std::vector<Component> components_;
     CommandQueue queue_;
     StackBuffer stack_;
+    HostBuffer depth_, picture_;
     bool in_strips_; /* many samples of 8 bits at once, on a CPU */
     NoiseEstimate noise_;
     cl::Kernel nearest_pixel_, mean_pixel_, compose_;

@@ -97,7 +97,7 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
 cl::Buffer FocusEngine::depth_for(const OutputPicture &output)
 {
     const size_t row_bytes = shape_.width * sizeof(cl_ushort), bytes = row_bytes * shape_.height;
-    if (device_->is_cpu() && output.pixels && output.stride == row_bytes)
+    if (device_->works_in_place() && output.pixels && output.stride == row_bytes)
         return {device_->context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, output.pixels};
     if (!depth_())
         depth_ = queue_.allocate(bytes);

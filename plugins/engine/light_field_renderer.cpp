@@ -144,7 +144,7 @@ void LightFieldRenderer::prepare_rows()
 
 cl::Buffer LightFieldRenderer::wrap(std::span<const std::byte> memory, cl_mem_flags access) const
 {
-    const cl_mem_flags placement = device_->is_cpu() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    const cl_mem_flags placement = device_->works_in_place() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
     /* OpenCL has no buffers of const host memory; `access` keeps the promise. */
     return {device_->context(), access | placement, memory.size(), const_cast<std::byte *>(memory.data())};
 }
@@ -166,7 +166,7 @@ void LightFieldRenderer::render(const Rows &color, const Rows &depth, std::span<
             layers_->run(pictures, positions_, geometry_);
             trace(target);
         }
-        if (!device_->is_cpu())
+        if (!device_->works_in_place())
             queue_.commands().enqueueReadBuffer(target.rows, CL_FALSE, 0, output.size(), output.data());
         times_ = queue_.finish();
     });

@@ -64,11 +64,16 @@ cl::Device choose(const std::vector<cl::Device> &devices, const std::string &wis
 
 } // namespace
 
-Device::Device(cl::Device device, std::optional<KernelStyle> style)
+static bool is_cpu(const cl::Device &device)
+{
+    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
+}
+
+Device::Device(cl::Device device, std::optional<KernelStyle> style, std::optional<bool> works_in_place)
     : device_(std::move(device)), context_(device_),
       programs_(std::make_unique<ProgramCache>(context_, device_)),
-      is_cpu_((device_.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0),
-      kernel_style_(style.value_or(is_cpu_ ? KernelStyle::Tiles : KernelStyle::Pixels)),
+      works_in_place_(works_in_place.value_or(is_cpu(device_))),
+      kernel_style_(style.value_or(is_cpu(device_) ? KernelStyle::Tiles : KernelStyle::Pixels)),
       global_memory_(device_.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()),
       largest_allocation_(device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
 {

@@ -23,16 +23,17 @@ public:
      * that come later. Throws EngineError (NoDevice) with the list of devices if there is none. */
     static std::shared_ptr<Device> open(const std::string &wish);
 
-    /* A device of one's own; CPUs get KernelStyle::Tiles unless told otherwise. */
-    explicit Device(cl::Device device, std::optional<KernelStyle> style = std::nullopt);
+    /* A device of one's own; CPUs get KernelStyle::Tiles and work in place unless told otherwise. */
+    explicit Device(cl::Device device, std::optional<KernelStyle> style = std::nullopt,
+                    std::optional<bool> works_in_place = std::nullopt);
 
     const cl::Device &device() const { return device_; }
     const cl::Context &context() const { return context_; }
     ProgramCache &programs() const { return *programs_; }
     std::string name() const;
 
-    /* The device works in the host's memory, so that stacks can be used in place. */
-    bool is_cpu() const { return is_cpu_; }
+    /* The device works in the host's memory, so that stacks need not be copied to it. */
+    bool works_in_place() const { return works_in_place_; }
 
     KernelStyle kernel_style() const { return kernel_style_; }
 
@@ -43,7 +44,7 @@ private:
     cl::Device device_;
     cl::Context context_;
     std::unique_ptr<ProgramCache> programs_;
-    bool is_cpu_;
+    bool works_in_place_;
     KernelStyle kernel_style_;
     size_t global_memory_;
     size_t largest_allocation_;

@@ -5,18 +5,14 @@
 namespace dff {
 
 StackBuffer::StackBuffer(CommandQueue &queue, StackShape shape)
-    : queue_(queue), shape_(shape),
+    : queue_(queue), shape_(shape), bytes_(queue),
       layout_(queue.allocate(shape.components().size() * shape.planes * sizeof(RowLayout)))
 {
 }
 
 void StackBuffer::assign(const StackView &view)
 {
-    const cl_mem_flags placement = queue_.device().is_cpu() ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    /* OpenCL has no buffers of const host memory; CL_MEM_READ_ONLY keeps the promise. */
-    auto *memory = const_cast<std::byte *>(view.memory.data());
-
-    bytes_ = cl::Buffer(queue_.device().context(), CL_MEM_READ_ONLY | placement, view.memory.size(), memory);
+    bytes_.upload(view.memory);
     changed_planes_ = tracker_.changed(view);
     tracker_.forget();
     if (view.layout != host_layout_) {

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/opencl/command_queue.h"
+#include "engine/opencl/host_buffer.h"
 #include "engine/plane_tracker.h"
 
 namespace dff {
@@ -23,7 +23,7 @@ public:
     void remember(const StackView &view) { tracker_.remember(view); }
 
     const StackShape &shape() const { return shape_; }
-    const cl::Buffer &bytes() const { return bytes_; }
+    const cl::Buffer &bytes() const { return bytes_.buffer(); }
 
     /* ulong2 (offset, stride) in bytes for each component and plane: [component][z]. */
     const cl::Buffer &layout() const { return layout_; }
@@ -34,7 +34,7 @@ private:
     std::vector<RowLayout> host_layout_;
     PlaneTracker tracker_;
     uint64_t changed_planes_ = ~uint64_t{0};
-    cl::Buffer bytes_;
+    HostBuffer bytes_;
     cl::Buffer layout_;
 };
 
