@@ -4,7 +4,7 @@
 #
 # oclgrind.sh [BUILD]: runs the engine's kernels, at small sizes, in a simulator that sees reads and writes outside of
 # buffers and data races: the variants for CPUs and for GPUs of method=paper and of the all-in-focus picture, and
-# method=volume. To be run by hand (apt install oclgrind); takes some minutes.
+# method=volume; and what light fields are made with. To be run by hand (apt install oclgrind); takes some minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build}
@@ -43,5 +43,6 @@ check "solver for GPUs" test_bilateral_grid '*the_same_engine*'
 check "picture for GPUs and CPUs" test_aif '*AifFormats*'
 check "sharp picture" test_aif '*SharpFormats*/0:*SharpFormats*/2'
 check "volume" test_volume_method '*VolumeShapes*/0:*VolumeShapes*/3:*VolumeShapes*/7'
+check "light-field views, panels and colour beside depth" ../lightfield/test_light_field_renderer '*left_over*:*both_kinds*:*rgbd*'
 echo "$failed failed"
 [ "$failed" = 0 ]
