@@ -79,7 +79,7 @@ say "Building in build-sanitize, with the address and undefined-behaviour saniti
 # build has that warning. GStreamer's byte reader and writer, which only C files use here, are not aligned, by intent.
 check "sanitizer build, without a warning" build build-sanitize -Doptimization=g -Ddebug=true -Dwerror=true \
     -Dauto_features=enabled -Dintrospection=disabled -Db_sanitize=address,undefined -Db_lundef=false \
-    -Dcpp_args=-g1,-Wno-error=maybe-uninitialized -Dc_args=-g1,-fno-sanitize=alignment
+    '-Dcpp_args=-g1 -Wno-error=maybe-uninitialized' '-Dc_args=-g1 -fno-sanitize=alignment'
 say "Testing the sanitizer build"
 meson_tests build-sanitize
 
