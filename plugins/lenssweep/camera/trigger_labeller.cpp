@@ -119,9 +119,12 @@ bool TriggerLabeller::agrees(const CameraFrame &frame, std::int64_t exposed_ns, 
         unconfirmed_ = frames_to_confirm;
         return false;
     }
-    const std::int64_t delay_ns = frame.arrival_ns - trigger.time_ns - anchor_->latency_ns;
-    if (delay_ns < -timing_.tolerance_ns()) {
-        anchor_broken_ = true; /* no frame is here before its time: the clock jumped */
+    const std::int64_t latency_ns = frame.arrival_ns - trigger.time_ns;
+    const std::int64_t delay_ns = latency_ns - anchor_->latency_ns;
+    const bool possible = latency_ns >= timing_.exposure_ns + timing_.transfer_ns - timing_.period_ns / 8;
+    const bool settled = unconfirmed_ == 0 && newest_->rhythm == triggers_.rhythm();
+    if (delay_ns < -timing_.tolerance_ns() && !(possible && settled)) {
+        anchor_broken_ = true; /* it is here before its time, or a clock in doubt says so: the clock jumped */
         return false;
     }
     if (unconfirmed_ > 0 && delay_ns <= timing_.tolerance_ns())

@@ -201,6 +201,16 @@ TEST(SyncLine, frames_that_all_come_late_at_first_cost_only_those_sweeps)
     EXPECT_FALSE(bench.labeller.lost());
 }
 
+TEST(SyncLine, frames_that_come_faster_than_the_first_ones_keep_their_labels)
+{
+    Bench bench(10);
+    for (RigEvent &event : bench.events)
+        if (event.kind == RigEvent::Frame && event.sweep < 3)
+            event.frame.arrival_ns += period * 6 / 10;
+    EXPECT_EQ(bench.run().size(), 9U * 6U);
+    EXPECT_FALSE(bench.labeller.lost());
+}
+
 TEST(SyncLine, a_slow_link_does_not_look_like_a_missed_trigger)
 {
     Rig rig = paper_rig();
