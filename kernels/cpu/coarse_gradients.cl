@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * For focus_tiles.cl: Sobel's filter, and the pictures of lower resolution under a tile, whose gradients are spread to the
- * fine columns. Units and layout stand there.
+ * For focus_tiles.cl: Sobel's filter, and the pictures of lower resolution under a tile, whose gradients are spread to
+ * the fine columns. Units and layout stand there.
  */
 inline ushort32 magnitude(short32 dx, short32 dy)
 {

@@ -5,8 +5,8 @@
  * work-item a row of the grid.
  *
  * Cells are float[rows + 2][ROW]; a row is [columns + 2][COLUMN] and some padding, a column an empty cell and one for
- * each step of luma. Border, padding and empty cells are 0 in every vector. COLUMN, ROW, COLUMNS, ROWS, SIGMA_XY and SIGMA_LUMA are
- * built in.
+ * each step of luma. Border, padding and empty cells are 0 in every vector. COLUMN, ROW, COLUMNS, ROWS, SIGMA_XY and
+ * SIGMA_LUMA are built in.
  *
  * The unknowns are scaled by the diagonal of A, x = sqrt(D) y, so that one coefficient a cell holds the whole system:
  *
@@ -71,8 +71,8 @@ inline int first_cell(void)
     return ((int)get_group_id(0) + 1) * ROW;
 }
 
-/* The part of the picture under a column of the grid, in strips 16 pixels wide: steps of luma, and planes. What fills the
- * last vector counts nowhere. */
+/* The part of the picture under a column of the grid, in strips 16 pixels wide: steps of luma, and planes. What fills
+ * the last vector counts nowhere. */
 #define STRIPS ((SIGMA_XY + 15) / 16)
 #define STRIP_VECTORS ((SIGMA_XY + 3) / 4)
 #define AHEAD 256   /* columns asked for ahead */
@@ -90,8 +90,8 @@ inline uchar lowest(uchar16 v)
     return min(c.lo, c.hi);
 }
 
-inline void load_area(__global const uchar *sparse, __global const uchar *luma, int left, int top, int width, int height,
-                      Area *area)
+inline void load_area(__global const uchar *sparse, __global const uchar *luma, int left, int top, int width,
+                      int height, Area *area)
 {
     const int right = min(left + SIGMA_XY, width), bottom = min(top + SIGMA_XY, height);
     uchar16 least = OUTSIDE, most = 0;

@@ -2,7 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * For CPUs, tile by tile: the slice of bilateral_grid.cl, the Gaussian of gaussian_blur.cl and the coding of
- * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and what luma_grid.cl says of the grid, are built in.
+ * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and what luma_grid.cl says of the grid, are built
+ * in.
  */
 #include "lanes32.cl"
 

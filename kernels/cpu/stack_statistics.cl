@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * For focus_tiles.cl, in one pass over a tile's luma in all planes, which the core's cache still holds: the reference of reference_image.cl (the mean, rounded down) and
- * the moved pixels of z_entropy.cl. H is at most log2 of the bins between the darkest and the brightest plane, so that
- * the histogram is needed where these lie far apart only.
+ * For focus_tiles.cl, in one pass over a tile's luma in all planes, which the core's cache still holds: the reference of
+ * reference_image.cl (the mean, rounded down) and the moved pixels of z_entropy.cl. H is at most log2 of the bins
+ * between the darkest and the brightest plane, so that the histogram is needed where these lie far apart only.
  */
 #define BIN_SHIFT 4 /* 16 DN */
 #define BINS 16
@@ -105,8 +105,8 @@ inline void statistics_of_64(__global const uchar *stack, __global const ulong2 
         *(__global bytes64 *)moved = 0;
 }
 
-/* mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. A last tile of less than 64 columns is left to
- * the one before. */
+/* mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. A last tile of less than 64 columns is left
+ * to the one before. */
 inline void tile_statistics(__global const uchar *stack, __global const ulong2 *rows, Tile tile, __global uchar *mean,
                             __global uchar *moved, int width, int planes, float threshold_bits)
 {

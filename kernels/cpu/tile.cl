@@ -46,7 +46,8 @@ inline void load_tile(__global const uchar *plane, ulong stride, Tile tile, int 
 }
 
 /* Rows of the tile that is measured next, to be asked for ahead: of the same tile in the next plane, or of the next
- * tile. Those shared with the tiles above and to the left have been read before. */
+ * tile. `row` begins MARGIN_Y rows below that tile's first one, and right of the columns it shares with the tile to the
+ * left, which have been read before. */
 typedef struct {
     __global const uchar *row;
     ulong stride;
