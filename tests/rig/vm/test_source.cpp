@@ -25,12 +25,12 @@ bool comes_true(const std::function<bool()> &what)
     return what();
 }
 
-guint64 triggers(GstElement *source)
+guint64 statistic(GstElement *source, const char *name)
 {
     g_autoptr(GstStructure) stats = nullptr;
     guint64 count = 0;
     g_object_get(source, "stats", &stats, nullptr);
-    gst_structure_get_uint64(stats, "triggers", &count);
+    gst_structure_get_uint64(stats, name, &count);
     return count;
 }
 
@@ -72,7 +72,7 @@ TEST(Source, loads_the_sequencer_then_raises_its_run_line_and_lowers_it_at_the_e
         rig::pull(rig::sync_line, false);
     }
     pipeline.set_state(GST_STATE_NULL);
-    EXPECT_EQ(triggers(pipeline.element("source")), 12U);
+    EXPECT_EQ(statistic(pipeline.element("source"), "triggers"), 12U);
     EXPECT_FALSE(rig::level(rig::run_line));
     EXPECT_EQ(rig::i2c_log().back(), "3c 02=0000");
     bus.write_word(static_cast<uint8_t>(Word::frame_count_low), 0);
@@ -81,19 +81,24 @@ TEST(Source, loads_the_sequencer_then_raises_its_run_line_and_lowers_it_at_the_e
 TEST(Source, moves_the_lens_from_plane_to_plane)
 {
     rig::empty_i2c_log();
-    Pipeline pipeline(
-        "lenssweepsrc camera=Fake_1 trigger=software planes=3 near=5 far=0 rate=1 lens=max14574:" +
-        rig::i2c_bus() + " ! fakesink");
+    Pipeline pipeline("lenssweepsrc name=source camera=Fake_1 trigger=software planes=3 near=5 far=0 rate=1 "
+                      "lens=max14574:" +
+                      rig::i2c_bus() + " ! fakesink");
     pipeline.set_state(GST_STATE_PLAYING);
     ASSERT_TRUE(comes_true([] { return rig::committed_codes().size() >= 7; }));
     pipeline.set_state(GST_STATE_NULL);
     const auto codes = rig::committed_codes();
     EXPECT_GT(codes[0], codes[1]) << "nearest first";
     EXPECT_GT(codes[1], codes[2]);
-    for (std::size_t i = 3; i < 7; ++i) {
+    /* From plane to plane, or to the first when the sweep is begun again: that camera's frames do not fit. */
+    guint64 begun_again = 0;
+    for (std::size_t i = 3; i < codes.size(); ++i) {
         const auto before = std::find(codes.begin(), codes.begin() + 3, codes[i - 1]) - codes.begin();
-        EXPECT_TRUE(codes[i] == codes[(before + 1) % 3] || codes[i] == codes[0])
-            << "move " << i << " is to " << codes[i] << ", neither the next plane nor a sweep begun again";
+        if (codes[i] != codes[(before + 1) % 3]) {
+            EXPECT_EQ(codes[i], codes[0]) << "move " << i;
+            begun_again++;
+        }
     }
+    EXPECT_LE(begun_again, statistic(pipeline.element("source"), "restarts"));
     EXPECT_EQ(rig::i2c_log().back(), "77 03=00") << "asleep";
 }

@@ -112,9 +112,9 @@ TEST(LensSweepSrc, a_pts_is_the_begin_of_the_exposure)
         ASSERT_NE(sample, nullptr);
         const GstClockTime now = gst_element_get_current_running_time(pipeline.get());
         const GstClockTime pts = GST_BUFFER_PTS(gst_sample_get_buffer(sample.get()));
-        if (pts > 0) { /* else it began before the stream did */
-            EXPECT_LE(pts + 5 * GST_MSECOND, now);
-        }
+        if (i == 0 && pts == 0)
+            continue; /* it began before the stream did */
+        EXPECT_LE(pts + 5 * GST_MSECOND, now);
         EXPECT_LT(now, pts + GST_SECOND) << "even on a busy machine";
     }
 }
