@@ -205,9 +205,8 @@ void SweepCapture::recover()
         throw CameraError(
             "The camera's frames and the triggers do not fit together. Check that planes and rate are "
             "those of the sequencer, that sync-line pulses at plane 0, and that the camera takes every "
-            "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure, beside "
-            "the "
-            "time that the link needs for it.");
+            "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure "
+            "and the time that the link needs for it.");
     restarts_++;
     if (triggers_->restartable()) {
         triggers_->stop();
