@@ -16,6 +16,7 @@ using Vector = std::vector<double>;
 using Place = std::array<int, 5>; /* x, y, Y, U, V */
 
 struct Grid {
+    std::map<Place, size_t> cells;
     std::vector<size_t> cell_of_pixel;
     std::vector<std::vector<size_t>> neighbours;
 };
@@ -25,7 +26,7 @@ Grid build_grid(const std::vector<uint8_t> &luma, const std::vector<uint8_t> &u,
                 const BilateralGrid::Parameters &p)
 {
     Grid grid;
-    std::map<Place, size_t> cells;
+    std::map<Place, size_t> &cells = grid.cells;
     for (unsigned y = 0; y < height; y++)
         for (unsigned x = 0; x < width; x++) {
             const size_t pixel = size_t{y} * width + x;
@@ -70,54 +71,70 @@ double dot(const Vector &a, const Vector &b)
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-} // namespace
-
-Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &reference_y,
-                       const std::vector<uint8_t> &reference_u, const std::vector<uint8_t> &reference_v,
-                       unsigned width, unsigned height, const BilateralGrid::Parameters &parameters)
-{
-    const Grid grid = build_grid(reference_y, reference_u, reference_v, width, height, parameters);
-    const size_t cells = grid.neighbours.size();
-    Vector mass(cells), weight(cells), target(cells), n(cells, 1.0);
-    for (size_t pixel = 0; pixel < sparse.size(); pixel++) {
-        const size_t cell = grid.cell_of_pixel[pixel];
-        mass[cell] += 1.0;
-        if (sparse[pixel] != 255) {
-            weight[cell] += 1.0;
-            target[cell] += sparse[pixel];
+/* A y = b + EPSILON t0 of bilateral_grid.cl over the occupied cells. */
+struct Problem {
+    Problem(const Grid &grid, const std::vector<uint8_t> &sparse, double lambda)
+        : grid(grid), lambda(lambda), weight(grid.neighbours.size()), target(weight.size()),
+          n(weight.size(), 1.0)
+    {
+        Vector mass(weight.size());
+        for (size_t pixel = 0; pixel < sparse.size(); pixel++) {
+            const size_t cell = grid.cell_of_pixel[pixel];
+            mass[cell] += 1.0;
+            if (sparse[pixel] != 255) {
+                weight[cell] += 1.0;
+                target[cell] += sparse[pixel];
+            }
         }
+        for (int step = 0; step < 10; step++) {
+            const Vector b = blurred(grid, n);
+            for (size_t i = 0; i < n.size(); i++)
+                n[i] = std::sqrt(n[i] * mass[i] / b[i]);
+        }
+        smooth = product(n, blurred(grid, n));
+        mean_target = std::accumulate(target.begin(), target.end(), 0.0) /
+                      std::accumulate(weight.begin(), weight.end(), 0.0);
     }
 
-    for (int step = 0; step < 10; step++) {
-        const Vector b = blurred(grid, n);
-        for (size_t i = 0; i < cells; i++)
-            n[i] = std::sqrt(n[i] * mass[i] / b[i]);
-    }
-    const Vector smooth = product(n, blurred(grid, n));
-    const auto system = [&](const Vector &v) {
+    /* A v */
+    Vector system(const Vector &v) const
+    {
         const Vector b = product(n, blurred(grid, product(n, v)));
-        Vector result(cells);
-        for (size_t i = 0; i < cells; i++)
-            result[i] = parameters.lambda * (smooth[i] * v[i] - b[i]) + (weight[i] + 1e-6) * v[i];
+        Vector result(v.size());
+        for (size_t i = 0; i < v.size(); i++)
+            result[i] = lambda * (smooth[i] * v[i] - b[i]) + (weight[i] + 1e-6) * v[i];
         return result;
-    };
+    }
 
-    const double mean_target = std::accumulate(target.begin(), target.end(), 0.0) /
-                               std::accumulate(weight.begin(), weight.end(), 0.0);
-    Vector solution(cells), diagonal(cells), residual(cells);
-    for (size_t i = 0; i < cells; i++) {
-        solution[i] = weight[i] > 0.0 ? target[i] / weight[i] : mean_target;
-        diagonal[i] = std::max(parameters.lambda * (smooth[i] - 10.0 * n[i] * n[i]) + weight[i] + 1e-6, 1e-5);
+    Vector residual(const Vector &y) const
+    {
+        Vector result = system(y);
+        for (size_t i = 0; i < y.size(); i++)
+            result[i] = target[i] + 1e-6 * mean_target - result[i];
+        return result;
     }
-    const Vector start = system(solution);
-    Vector direction(cells);
-    for (size_t i = 0; i < cells; i++) {
-        residual[i] = target[i] + 1e-6 * mean_target - start[i];
-        direction[i] = residual[i] / diagonal[i];
-    }
-    Vector scaled = direction;
-    for (unsigned step = 0; step < parameters.iterations; step++) {
-        const Vector applied = system(direction);
+
+    double diagonal(size_t i) const { return lambda * (smooth[i] - 10.0 * n[i] * n[i]) + weight[i] + 1e-6; }
+
+    const Grid &grid;
+    double lambda;
+    Vector weight, target, n, smooth;
+    double mean_target;
+};
+
+/* With Jacobi's preconditioner. */
+Vector conjugate_gradient(const Problem &problem, Vector solution, unsigned iterations)
+{
+    const size_t cells = solution.size();
+    Vector residual = problem.residual(solution), scaled(cells);
+    const auto scale = [&] {
+        for (size_t i = 0; i < cells; i++)
+            scaled[i] = residual[i] / std::max(problem.diagonal(i), 1e-5);
+    };
+    scale();
+    Vector direction = scaled;
+    for (unsigned step = 0; step < iterations; step++) {
+        const Vector applied = problem.system(direction);
         const double before = dot(residual, scaled);
         if (before == 0.0)
             break;
@@ -125,17 +142,35 @@ Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uin
         for (size_t i = 0; i < cells; i++) {
             solution[i] += alpha * direction[i];
             residual[i] -= alpha * applied[i];
-            scaled[i] = residual[i] / diagonal[i];
         }
+        scale();
         const double beta = dot(residual, scaled) / before;
         for (size_t i = 0; i < cells; i++)
             direction[i] = scaled[i] + beta * direction[i];
     }
+    return solution;
+}
 
+Volume sliced(const Vector &solution, const Grid &grid, unsigned width, unsigned height)
+{
     Volume u(width, height, 1);
-    for (size_t pixel = 0; pixel < sparse.size(); pixel++)
+    for (size_t pixel = 0; pixel < u.values.size(); pixel++)
         u.values[pixel] = static_cast<float>(solution[grid.cell_of_pixel[pixel]]);
     return u;
+}
+
+} // namespace
+
+Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &reference_y,
+                       const std::vector<uint8_t> &reference_u, const std::vector<uint8_t> &reference_v,
+                       unsigned width, unsigned height, const BilateralGrid::Parameters &parameters)
+{
+    const Grid grid = build_grid(reference_y, reference_u, reference_v, width, height, parameters);
+    const Problem problem(grid, sparse, parameters.lambda);
+    Vector start(grid.neighbours.size());
+    for (size_t i = 0; i < start.size(); i++)
+        start[i] = problem.weight[i] > 0.0 ? problem.target[i] / problem.weight[i] : problem.mean_target;
+    return sliced(conjugate_gradient(problem, start, parameters.iterations), grid, width, height);
 }
 
 /* What of a cell arrives at another when each of `cells` passes 0.6 of its own on to the right, then to the
@@ -185,6 +220,42 @@ Volume spread_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_
         start.values[pixel] = static_cast<float>(means[here]);
     }
     return start;
+}
+
+/* The picture's pixel values, one a cell. */
+static Vector gathered(const Volume &picture, const Grid &grid)
+{
+    Vector cells(grid.neighbours.size());
+    for (size_t pixel = 0; pixel < picture.values.size(); pixel++)
+        cells[grid.cell_of_pixel[pixel]] = picture.values[pixel];
+    return cells;
+}
+
+Continued solve_from_better_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &luma,
+                                  const Volume &last, const std::vector<uint8_t> &last_luma,
+                                  const BilateralGrid::Parameters &parameters)
+{
+    const Grid grid = build_grid(luma, {}, {}, last.width, last.height, parameters);
+    const Grid last_grid = build_grid(last_luma, {}, {}, last.width, last.height, parameters);
+    const Vector last_solution = gathered(last, last_grid);
+    const Vector spread = gathered(spread_start(sparse, luma, last.width, last.height, parameters), grid);
+    Vector continued = spread;
+    for (const auto &[place, cell] : grid.cells)
+        if (const auto before = last_grid.cells.find(place); before != last_grid.cells.end())
+            continued[cell] = last_solution[before->second];
+
+    const Problem problem(grid, sparse, parameters.lambda);
+    const auto squared_residual = [&](const Vector &start) {
+        const Vector residual = problem.residual(start);
+        double sum = 0.0;
+        for (size_t i = 0; i < residual.size(); i++)
+            sum += residual[i] * residual[i] / problem.diagonal(i);
+        return sum;
+    };
+    const double of_spread = squared_residual(spread), of_continued = squared_residual(continued);
+    const Vector &better = of_continued < of_spread ? continued : spread;
+    return {sliced(conjugate_gradient(problem, better, parameters.iterations), grid, last.width, last.height),
+            of_continued / of_spread};
 }
 
 } // namespace dff::twin

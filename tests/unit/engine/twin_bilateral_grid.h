@@ -17,4 +17,15 @@ Volume bilateral_solve(const std::vector<uint8_t> &sparse, const std::vector<uin
 Volume spread_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &luma, unsigned width,
                     unsigned height, const BilateralGrid::Parameters &parameters);
 
+struct Continued {
+    Volume u;
+    double residual_ratio; /* squared residuals of the starts, of the solution before to the spread one */
+};
+
+/* As LumaGrid solves: from the better of spread_start and of `last`, the solution before, whose picture had
+ * the luma `last_luma`; where a cell had no pixels then, the spread one stands in. */
+Continued solve_from_better_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_t> &luma,
+                                  const Volume &last, const std::vector<uint8_t> &last_luma,
+                                  const BilateralGrid::Parameters &parameters);
+
 } // namespace dff::twin
