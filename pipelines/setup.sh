@@ -11,7 +11,7 @@ build_packages=(
     build-essential pkg-config meson ninja-build
     libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgstrtspserver-1.0-dev gobject-introspection libgirepository1.0-dev
     ocl-icd-opencl-dev opencl-clhpp-headers opencl-c-headers
-    libopencv-dev libopenexr-dev libaravis-dev libgpiod-dev libglm-dev)
+    libopencv-dev libopenexr-dev libaravis-dev libusb-1.0-0-dev libgpiod-dev libglm-dev) # Aravis' pkg-config file asks for libusb
 test_packages=(
     libgtest-dev libasan8 libubsan1 clang-format clang-tidy
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
