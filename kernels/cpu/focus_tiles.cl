@@ -99,38 +99,69 @@ inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int
     }
 }
 
-inline float sum_of_lanes(float16 v)
-{
-    const float8 a = v.lo + v.hi;
-    const float4 b = a.lo + a.hi;
-    const float2 c = b.lo + b.hi;
-    return c.lo + c.hi;
-}
-
-/* Confidence of 16 pixels, of which `columns` lie in the picture. */
-inline void store_confidence(float16 peak, float16 mean, int planes, __global uchar *confidence, int columns)
+/* Confidence of 16 pixels. */
+inline int16 confidence_of(float16 peak, float16 mean, int planes)
 {
     const float16 above = select((float16)0.0f, 1.0f - mean / peak, peak > 0.0f);
-    uchar lanes[16];
-    *(lanes8 *)lanes = convert_uchar16(clamp(255.0f * above * planes / (planes - 1) + 0.5f, 0.0f, 255.0f));
-    for (int i = 0; i < min(columns, 16); i++)
-        confidence[i] = lanes[i];
+    return convert_int16(clamp(255.0f * above * planes / (planes - 1) + 0.5f, 0.0f, 255.0f));
 }
 
-/* 16 pixels from column x on, out of a tile's blocks. */
-inline int16 pixels_at(const int *blocks, int x, int y)
+/* The first `columns` of 64 bytes. */
+inline void store_bytes(int16 bytes, __global uchar *out, int columns)
 {
-    const int *columns = blocks + (x / BLOCK * TILE_HEIGHT + y) * BLOCK + x % BLOCK / 4;
-    const int4 a = *(const int4 *)columns, b = *(const int4 *)(columns + 16);
-    const int4 c = *(const int4 *)(columns + 32), d = *(const int4 *)(columns + 48);
-    const int8 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5, 2, 6, 3, 7);
-    const int8 cd = __builtin_shufflevector(c, d, 0, 4, 1, 5, 2, 6, 3, 7);
-    return __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15);
+    if (columns >= BLOCK) {
+        *(__global bytes64 *)out = __builtin_astype(bytes, uchar64);
+        return;
+    }
+    uchar lanes[BLOCK];
+    *(bytes64 *)lanes = __builtin_astype(bytes, uchar64);
+    for (int i = 0; i < columns; i++)
+        out[i] = lanes[i];
+}
+
+/* Pairs of columns, taken from `first` and `second` in turn, past the caches: nobody reads them before the whole
+ * picture is done. */
+inline void store_pairs(uint16 first, uint16 second, __global ushort *out)
+{
+    __global uint16 *lines = (__global uint16 *)out;
+    const uint16 a =
+        __builtin_shufflevector(first, second, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+    const uint16 b =
+        __builtin_shufflevector(first, second, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+    __builtin_nontemporal_store(a, lines);
+    __builtin_nontemporal_store(b, lines + 1);
+}
+
+/* Writes 64 pixels, of which `columns` lie in the picture, and returns the sum of their means. `unit` is what one of
+ * the integer product is worth; without confidence its pointer is 0. */
+inline float16 store_pixels(const int *best, const float *sum, int columns, float unit, int planes, float tolerance,
+                            __global ushort *peak, __global uchar *peak_plane, __global uchar *confidence)
+{
+    uint16 peaks[4];
+    int16 found = 0, confident = 0;
+    float16 total = 0.0f;
+    __attribute__((opencl_unroll_hint))
+    for (int i = 0; i < 4; i++) {
+        const int16 inside = 4 * LANE + i < columns;
+        const int16 bits = *(const int16 *)(best + 16 * i);
+        const float16 p = as_float16(bits & ~LAST_PLANE & inside) * unit;
+        const float16 mean = as_float16(*(const int16 *)(sum + 16 * i) & inside) * (unit / planes);
+        peaks[i] = as_uint16(p);
+        found |= select((int16)UNKNOWN_PLANE, LAST_PLANE - (bits & LAST_PLANE), p >= tolerance * mean) << 8 * i;
+        total += mean;
+        if (confidence)
+            confident |= confidence_of(p, mean, planes) << 8 * i;
+    }
+    store_pairs(peaks[0] >> 16 | (peaks[1] & 0xffff0000u), peaks[2] >> 16 | (peaks[3] & 0xffff0000u), peak);
+    __builtin_nontemporal_store(found, (__global int16 *)peak_plane);
+    if (confidence)
+        store_bytes(confident, confidence, columns);
+    return total;
 }
 
 /* One work-item a tile. peak[height][stride]: max_z P as the upper half of a float; peak_plane likewise: where it is,
  * UNKNOWN_PLANE where it is not `tolerance` times the mean over z; tile_sums: sum over a tile's pixels of the mean over
- * z. The stride is in pixels and holds whole lanes; peak is 0 behind the picture's columns. confidence[height][width]
+ * z. The stride is in pixels and a multiple of 64; peak is 0 behind the picture's columns. confidence[height][width]
  * as in sparse_depth.cl, if `with_confidence`; mean and moved as in stack_statistics.cl. */
 __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *table, __global ushort *peak,
                           __global uchar *peak_plane, __global float *tile_sums, __global uchar *confidence,
@@ -171,20 +202,12 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
         unit *= COARSE_UNIT(level);
     float16 total = 0.0f;
     for (int y = 0; y < tile.rows; y++)
-        for (int x = 0; x < tile.columns; x += 16) {
-            const ulong pixel = (ulong)(tile.y + y) * stride + tile.x + x;
-            const int16 bits = pixels_at(best, x, y);
-            const int16 inside = LANE < tile.columns - x;
-            const float16 p = as_float16(bits & ~LAST_PLANE & inside) * unit;
-            const float16 mean = as_float16(pixels_at((const int *)sum, x, y) & inside) * (unit / planes);
-            const int16 plane = LAST_PLANE - (bits & LAST_PLANE);
-            const int16 sharp = p >= tolerance * mean;
-            total += mean;
-            *(__global lanes16 *)(peak + pixel) = convert_ushort16(as_uint16(p) >> 16);
-            *(__global lanes8 *)(peak_plane + pixel) = convert_uchar16(select((int16)UNKNOWN_PLANE, plane, sharp));
-            if (with_confidence)
-                store_confidence(p, mean, planes, confidence + (ulong)(tile.y + y) * width + tile.x + x,
-                                 tile.columns - x);
+        for (int x = 0; x < tile.columns; x += BLOCK) {
+            const int from = (x / BLOCK * TILE_HEIGHT + y) * BLOCK;
+            const ulong entry = (ulong)(tile.y + y) * stride + tile.x + x;
+            const ulong pixel = (ulong)(tile.y + y) * width + tile.x + x;
+            total += store_pixels(best + from, sum + from, tile.columns - x, unit, planes, tolerance, peak + entry,
+                                  peak_plane + entry, with_confidence ? confidence + pixel : 0);
         }
     tile_sums[get_group_id(1) * get_num_groups(0) + get_group_id(0)] = sum_of_lanes(total);
 }

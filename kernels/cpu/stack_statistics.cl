@@ -9,6 +9,26 @@
 #define BINS 16
 #define MOST_PLANES 64
 #define ROUNDING 1e-4f /* bits by which n_log2() may err */
+#define ROWS_AHEAD 3   /* rows */
+
+/* n log2 n of whole numbers 1..64, to 2e-4: exponent plus a polynomial of the mantissa m in [1, 2). (log2() takes the
+ * lanes one by one.) */
+inline float16 n_log2(float16 n)
+{
+    const int16 bits = as_int16(n);
+    const float16 m = as_float16((bits & 0x007fffff) | 0x3f800000) - 1.0f;
+    const float16 log_m = m * (1.4425018f + m * (-0.7176700f + m * (0.4557525f + m * (-0.2748533f + m * (0.1194024f +
+                          m * -0.0251334f)))));
+    return n * (convert_float16((bits >> 23) - 127) + log_m);
+}
+
+inline float sum_of_lanes(float16 v)
+{
+    const float8 a = v.lo + v.hi;
+    const float4 b = a.lo + a.hi;
+    const float2 c = b.lo + b.hi;
+    return c.lo + c.hi;
+}
 
 inline int lowest(uchar16 v)
 {
@@ -23,54 +43,36 @@ inline int highest(uchar16 v)
     return 255 - lowest(~v);
 }
 
-/* n log2 n of whole numbers 1..64, to 2e-4: exponent plus a polynomial of the mantissa m in [1, 2). (log2() takes the
- * lanes one by one.) */
-inline float16 n_log2(float16 n)
-{
-    const int16 bits = as_int16(n);
-    const float16 m = as_float16((bits & 0x007fffff) | 0x3f800000) - 1.0f;
-    const float16 log_m = m * (1.4425018f + m * (-0.7176700f + m * (0.4557525f + m * (-0.2748533f + m * (0.1194024f +
-                          m * -0.0251334f)))));
-    return n * (convert_float16((bits >> 23) - 127) + log_m);
-}
-
-/* Entropy along z of 16 pixels whose planes fall in the bins from `first` to `last`, bits. */
-inline float16 entropy(const uchar16 *bins, int planes, int first, int last)
-{
-    float16 sum = 0.0f;
-    for (int bin = first; bin <= last; bin++) {
-        char16 count = 0;
-        for (int z = 0; z < planes; z++)
-            count -= bins[z] == (uchar16)(uchar)bin;
-        sum += n_log2(max(convert_float16(count), 1.0f));
-    }
-    return log2((float)planes) - sum / planes;
-}
-
-/* Which of 16 pixels moved, 255 each. */
-inline uchar16 entropy_exceeds(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
-                               float threshold_bits)
+/* Which of 16 pixels moved, 255 each, among the `candidates`: H = log2 N - 1/N sum of n log2 n over the bins with n of
+ * the N planes is above the threshold where that sum is below `least`. */
+inline uchar16 moves(__global const uchar *stack, const ulong *starts, int x, int planes, float least,
+                     uchar16 candidates)
 {
     uchar16 bins[MOST_PLANES], first = 255, last = 0;
     for (int z = 0; z < planes; z++) {
-        bins[z] = *(__global const lanes8 *)(stack + rows[z].x + rows[z].y * (ulong)y + x) >> (uchar)BIN_SHIFT;
+        bins[z] = *(__global const lanes8 *)(stack + starts[z] + x) >> (uchar)BIN_SHIFT;
         first = min(first, bins[z]);
         last = max(last, bins[z]);
     }
-    return as_uchar16(convert_char16(entropy(bins, planes, lowest(first), highest(last)) > threshold_bits + ROUNDING));
+    float16 sum = 0.0f;
+    const int end = highest(last & candidates);
+    for (int bin = lowest(first | ~candidates); bin <= end; bin++) {
+        uchar16 count = 0;
+        for (int z = 0; z < planes; z++)
+            count -= as_uchar16(bins[z] == (uchar16)(uchar)bin);
+        sum += n_log2(max(convert_float16(count), 1.0f));
+    }
+    return as_uchar16(convert_char16(sum < least)) & candidates;
 }
 
-/* Which of 64 pixels moved, where some of them span `most_bins` bins or more. */
-inline void mark_moved(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
-                       float threshold_bits, uchar64 bins_between, uchar most_bins, __global uchar *moved)
+/* Which of 64 pixels moved, among those whose byte of `candidates` is 255. */
+inline void mark_moved(__global const uchar *stack, const ulong *starts, int x, int planes, float least,
+                       const uchar *candidates, __global uchar *moved)
 {
-    uchar between[64];
-    *(bytes64 *)between = bins_between;
     for (int i = 0; i < 64; i += 16) {
-        uchar16 exceeds = 0;
-        if (any(*(const lanes8 *)(between + i) >= (uchar16)most_bins))
-            exceeds = entropy_exceeds(stack, rows, x + i, y, planes, threshold_bits);
-        *(__global lanes8 *)(moved + i) = exceeds;
+        const uchar16 c = *(const lanes8 *)(candidates + i);
+        if (any(as_char16(c)))
+            *(__global lanes8 *)(moved + i) = moves(stack, starts, x + i, planes, least, c);
     }
 }
 
@@ -83,29 +85,29 @@ inline ushort32 mean_of(ushort32 sums, int planes)
 }
 
 /* Statistics of 64 pixels; mean and moved point at the first. */
-inline void statistics_of_64(__global const uchar *stack, __global const ulong2 *rows, int x, int y, int planes,
-                             float threshold_bits, uchar most_bins, __global uchar *mean, __global uchar *moved)
+inline void statistics_of_64(__global const uchar *stack, const ulong *starts, int x, int planes, float least,
+                             uchar most_bins, __global uchar *mean, __global uchar *moved)
 {
     ushort32 even = 0, odd = 0;
     uchar64 darkest = 255, brightest = 0;
     for (int z = 0; z < planes; z++) {
-        const uchar64 luma = *(__global const bytes64 *)(stack + rows[z].x + rows[z].y * (ulong)y + x);
+        const uchar64 luma = *(__global const bytes64 *)(stack + starts[z] + x);
         even += even_bytes(as_ushort32(luma));
         odd += odd_bytes(as_ushort32(luma));
         darkest = luma < darkest ? luma : darkest;
         brightest = luma > brightest ? luma : brightest;
     }
     *(__global byte_pairs *)mean = mean_of(even, planes) | mean_of(odd, planes) << (ushort)8;
+    *(__global bytes64 *)moved = 0;
 
     const uchar64 bins_between = (brightest >> (uchar)BIN_SHIFT) - (darkest >> (uchar)BIN_SHIFT);
-    const long8 many = __builtin_astype(bins_between >= most_bins, long8);
-    if (any(many != 0))
-        mark_moved(stack, rows, x, y, planes, threshold_bits, bins_between, most_bins, moved);
-    else
-        *(__global bytes64 *)moved = 0;
+    const ulong8 candidates = __builtin_astype(bins_between >= most_bins, ulong8);
+    if (any(as_long8(candidates) != 0))
+        mark_moved(stack, starts, x, planes, least, (const uchar *)&candidates, moved);
 }
 
-/* mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. A last tile of less than 64 columns is left
+/* mean, moved: uchar[height][width]; moved is 255 where H > threshold_bits. The rows they are written to are asked for
+ * ahead as well. A last tile of less than 64 columns is left
  * to the one before. */
 inline void tile_statistics(__global const uchar *stack, __global const ulong2 *rows, Tile tile, __global uchar *mean,
                             __global uchar *moved, int width, int planes, float threshold_bits)
@@ -114,10 +116,17 @@ inline void tile_statistics(__global const uchar *stack, __global const ulong2 *
     if (end - tile.x < 64)
         return;
     const uchar most_bins = (uchar)min(exp2(threshold_bits), (float)BINS);
-    for (int y = tile.y; y < tile.y + tile.rows; y++)
+    const float least = planes * (log2((float)planes) - threshold_bits - ROUNDING);
+    ulong starts[MOST_PLANES];
+    for (int y = tile.y; y < tile.y + tile.rows; y++) {
+        for (int z = 0; z < planes; z++)
+            starts[z] = rows[z].x + rows[z].y * (ulong)y;
         for (int block = tile.x; block < end; block += 64) {
             const int x = min(block, end - 64);
             const ulong pixel = (ulong)y * width + x;
-            statistics_of_64(stack, rows, x, y, planes, threshold_bits, most_bins, mean + pixel, moved + pixel);
+            PREFETCH(mean + pixel + ROWS_AHEAD * width);
+            PREFETCH(moved + pixel + ROWS_AHEAD * width);
+            statistics_of_64(stack, starts, x, planes, least, most_bins, mean + pixel, moved + pixel);
         }
+    }
 }

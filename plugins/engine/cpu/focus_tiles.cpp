@@ -11,7 +11,7 @@ namespace {
 /* TILE_WIDTH and TILE_HEIGHT of tile.cl, SEGMENT and STRIP of select_ridges.cl */
 constexpr size_t tile_width = 384, tile_height = 36, segment = 256, strip = 36;
 
-constexpr size_t lanes = 16;
+constexpr size_t block = 64; /* BLOCK of tile.cl */
 
 constexpr size_t parts_of(size_t size, size_t part)
 {
@@ -23,7 +23,7 @@ constexpr size_t parts_of(size_t size, size_t part)
 FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned levels, float tolerance,
                        float entropy_bits)
     : queue_(queue), shape_(shape), tolerance_(tolerance), entropy_bits_(entropy_bits),
-      stride_((parts_of(shape.width, lanes) + 1) * lanes),
+      stride_((parts_of(shape.width, block) + 1) * block),
       tiles_(parts_of(shape.width, tile_width), parts_of(shape.height, tile_height)),
       focus_tiles_(
           Program(queue.device(), "focus_tiles", "-DLEVELS=" + std::to_string(levels)).kernel("focus_tiles")),
