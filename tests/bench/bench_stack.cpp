@@ -9,46 +9,60 @@ namespace dff::bench {
 
 namespace {
 
-/* Texture of several sizes on slow changes of light. */
-cv::Mat textured_picture(int width, int height)
+/* Texture of some sizes, in pixels, about `middle`. */
+cv::Mat textured_picture(cv::RNG &random, cv::Size picture, std::initializer_list<int> sizes, float amplitude)
 {
-    cv::RNG random(1);
-    cv::Mat sum = cv::Mat::zeros(height, width, CV_32F);
-    for (const int size : {2, 8, 64}) {
-        cv::Mat coarse(height / size + 1, width / size + 1, CV_32F), fine;
-        random.fill(coarse, cv::RNG::UNIFORM, -35.0f, 35.0f);
-        cv::resize(coarse, fine, {width, height}, 0, 0, cv::INTER_CUBIC);
+    cv::Mat sum(picture, CV_32F, cv::Scalar(128.0));
+    for (const int size : sizes) {
+        cv::Mat coarse(picture.height / size + 1, picture.width / size + 1, CV_32F), fine;
+        random.fill(coarse, cv::RNG::UNIFORM, -amplitude, amplitude);
+        cv::resize(coarse, fine, picture, 0, 0, cv::INTER_CUBIC);
         sum += fine;
     }
-    return sum + 128.0f;
+    return sum;
+}
+
+/* Writes the planes of a component: of `planes` bands of the sharp picture, one is sharp in each plane and
+ * blurred by `blur_step` more a plane elsewhere. */
+void paint(const cv::Mat &sharp, int blur_step, std::vector<cv::Mat> planes)
+{
+    const int n = static_cast<int>(planes.size());
+    for (int blur = 0; blur < n; blur++) {
+        cv::Mat blurred = sharp, bytes;
+        if (blur)
+            cv::blur(sharp, blurred, {blur_step * blur + 1, blur_step * blur + 1});
+        blurred.convertTo(bytes, CV_8U);
+        for (int z = 0; z < n; z++)
+            for (int band = 0; band < n; band++)
+                if (std::abs(z - band) == blur) {
+                    const cv::Range columns(band * sharp.cols / n, (band + 1) * sharp.cols / n);
+                    bytes.colRange(columns).copyTo(planes[z].colRange(columns));
+                }
+    }
 }
 
 } // namespace
 
 BenchStack::BenchStack(uint32_t width, uint32_t height, uint32_t planes)
-    : shape{PixelFormat::I420, width, height, planes}, layout(packed_layout(shape))
+    : shape{PixelFormat::I420, width, height, planes}, layout(packed_layout(shape)),
+      memory(size_t{width} * height * 3 / 2 * planes)
 {
-    const int w = static_cast<int>(width), h = static_cast<int>(height), n = static_cast<int>(planes);
-    const size_t plane_bytes = size_t{width} * height, picture_bytes = plane_bytes + plane_bytes / 2;
-    memory.assign(picture_bytes * planes, std::byte{128});
-    luma.resize(plane_bytes * planes);
-
-    const cv::Mat sharp = textured_picture(w, h);
-    for (int blur = 0; blur < n; blur++) {
-        cv::Mat blurred = sharp, bytes;
-        if (blur)
-            cv::blur(sharp, blurred, {2 * blur + 1, 2 * blur + 1});
-        blurred.convertTo(bytes, CV_8U);
-        for (int z = 0; z < n; z++)
-            for (int band = 0; band < n; band++)
-                if (std::abs(z - band) == blur) {
-                    const cv::Rect area(band * w / n, 0, (band + 1) * w / n - band * w / n, h);
-                    bytes(area).copyTo(cv::Mat(h, w, CV_8U, luma.data() + z * plane_bytes)(area));
-                }
-    }
-    for (uint32_t z = 0; z < planes; z++)
-        std::copy_n(reinterpret_cast<const std::byte *>(luma.data()) + z * plane_bytes, plane_bytes,
-                    memory.begin() + static_cast<std::ptrdiff_t>(layout[z].offset));
+    const std::vector<Component> components = shape.components();
+    const auto planes_of = [&](size_t component) {
+        const Component &c = components[component];
+        std::vector<cv::Mat> pictures;
+        for (uint32_t z = 0; z < planes; z++)
+            pictures.emplace_back(static_cast<int>(c.height), static_cast<int>(c.width), CV_8U,
+                                  memory.data() + layout[component * planes + z].offset);
+        return pictures;
+    };
+    cv::RNG random(1);
+    const cv::Size pixels(static_cast<int>(width), static_cast<int>(height));
+    paint(textured_picture(random, pixels, {2, 8, 64}, 35.0f), 2, planes_of(0));
+    for (const size_t chroma : {1, 2})
+        paint(textured_picture(random, pixels / 2, {4, 32, 128}, 20.0f), 1, planes_of(chroma));
+    for (const cv::Mat &plane : planes_of(0))
+        luma.insert(luma.end(), plane.datastart, plane.dataend);
 }
 
 } // namespace dff::bench

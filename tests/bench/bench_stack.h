@@ -6,8 +6,8 @@
 
 namespace dff::bench {
 
-/* A stack I420 of a textured picture, vertical bands of it sharp in one plane after the other and blurred by
- * 2 pixels more a plane elsewhere. */
+/* A stack I420 of a picture with texture in luma and, coarser and fainter, in chroma; vertical bands of it
+ * are sharp in one plane after the other and blurred by 2 pixels more a plane elsewhere. */
 struct BenchStack {
     BenchStack(uint32_t width, uint32_t height, uint32_t planes);
 

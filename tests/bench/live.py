@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling]: a live simulated
-camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown how many stacks
-were late or dropped, how many of these while a hypervisor took the processors away, and how long after its last plane a
-stack's depth left. Run it in `meson devenv -C build`, on a
-machine that has nothing else to do; five minutes (--seconds 300) are the proof, ten seconds a trial."""
+"""live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling]
+
+A live simulated camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown
+how many stacks were late or dropped, how many of these while a hypervisor took the processors away, and how long after
+its last plane a stack's depth left.
+
+Run it in `meson devenv -C build`, on a machine that has nothing else to do; five minutes (--seconds 300) are the proof,
+ten seconds a trial.
+"""
 import argparse
 import bisect
 import collections
@@ -134,7 +138,7 @@ def run(pipeline):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=300)
     parser.add_argument("--method", default="volume")
     parser.add_argument("--size", default="1920x1080")

@@ -12,7 +12,4 @@ namespace dff::bench {
  * is left out by the compiler. */
 double plain_focus_measure(std::span<const uint8_t> luma, int width, int height, int planes);
 
-/* The same with OpenCV's functions. */
-double opencv_focus_measure(std::span<const uint8_t> luma, int width, int height, int planes);
-
 } // namespace dff::bench

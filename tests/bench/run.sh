@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 #
-# run.sh [--quick|--linearity] [FOLDER]: times a stack from luma to all-in-focus picture, stage by stage, beside a memory copy and
-# other ways to the same end. Writes bench.md, bench.json and bench.svg to FOLDER (bench-results). Ratios hold on a busy
-# machine too, times on an idle one only. --quick: 1920x1080 alone, fewer rounds; --linearity: from VGA to 4K and from 4
-# planes to 32, without the others. live.py beside it is the live proof.
+# run.sh [--quick|--linearity] [FOLDER]: times a stack from luma to depth and to all-in-focus picture, stage by stage,
+# beside a memory copy and other ways to the same end. Writes bench.md, bench.json and bench.svg to FOLDER
+# (bench-results). Ratios hold on a busy machine too, times on an idle one only. --quick: 1920x1080 alone; --linearity:
+# from VGA to 4K and from 4 planes to 32, without the others. live.py beside it is the live proof.
 set -euo pipefail
 part=()
 if [[ "${1:-}" = --* ]]; then
