@@ -9,6 +9,9 @@
  * without metas the first goes with the first, and so on. A stack without usable depth gives a picture all
  * the same, the mean of its planes. Put a queue on every branch.
  *
+ * The OpenCL device is shared with the neighbours, or given by the application: see
+ * gst_context_new_dff_device().
+ *
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! tee name=s \
  *     s. ! queue ! dffdepth ! queue ! c.depth  s. ! queue ! c.stack \
@@ -167,6 +170,18 @@ static gboolean gst_aif_compose_sink_event(GstAggregator *aggregator, GstAggrega
     return GST_AGGREGATOR_CLASS(gst_aif_compose_parent_class)->sink_event(aggregator, pad, event);
 }
 
+static gboolean gst_aif_compose_sink_query(GstAggregator *aggregator, GstAggregatorPad *pad, GstQuery *query)
+{
+    return GST_AIF_COMPOSE(aggregator)->state->answer(query) ||
+           GST_AGGREGATOR_CLASS(gst_aif_compose_parent_class)->sink_query(aggregator, pad, query);
+}
+
+static gboolean gst_aif_compose_src_query(GstAggregator *aggregator, GstQuery *query)
+{
+    return GST_AIF_COMPOSE(aggregator)->state->answer(query) ||
+           GST_AGGREGATOR_CLASS(gst_aif_compose_parent_class)->src_query(aggregator, query);
+}
+
 static gboolean gst_aif_compose_start(GstAggregator *aggregator)
 {
     return GST_AIF_COMPOSE(aggregator)->state->start();
@@ -226,6 +241,8 @@ static void gst_aif_compose_class_init(GstAifComposeClass *klass)
     aggregator_class->aggregate = gst_aif_compose_aggregate;
     aggregator_class->update_src_caps = gst_aif_compose_update_src_caps;
     aggregator_class->sink_event = gst_aif_compose_sink_event;
+    aggregator_class->sink_query = gst_aif_compose_sink_query;
+    aggregator_class->src_query = gst_aif_compose_src_query;
     aggregator_class->propose_allocation = dff::DepthComposer::propose_allocation;
     aggregator_class->start = gst_aif_compose_start;
     aggregator_class->stop = gst_aif_compose_stop;

@@ -4,6 +4,17 @@
 
 namespace dff {
 
+void DepthStatistics::install_property(GObjectClass *object_class, guint id)
+{
+    g_object_class_install_property(
+        object_class, id,
+        g_param_spec_boxed(
+            "stats", "Stats",
+            "Stacks so far, those without any depth, milliseconds the last one took, whole and for each "
+            "stage, and the part of its residual that the solver left",
+            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+}
+
 void DepthStatistics::add(const StackDepth &depth, bool known, GstClockTime compute_time)
 {
     stacks_++;

@@ -12,7 +12,8 @@ public:
     /* Counts the stack that `depth` has just computed, or was unable to. */
     void add(const StackDepth &depth, bool known, GstClockTime compute_time);
 
-    /* The property `stats`. */
+    /* The property `stats`, under this number. */
+    static void install_property(GObjectClass *object_class, guint id);
     GstStructure *to_structure() const;
 
 private:

@@ -13,6 +13,9 @@
  * The request pads `sparse` (depth before it is filled, 0 = unknown), `confidence` (GRAY8) and `motion`
  * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.
  *
+ * The OpenCL device is shared with the neighbours, or given by the application: see
+ * gst_context_new_dff_device().
+ *
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! dffdepth ! videoconvert ! fakesink
  * ]|
@@ -21,6 +24,7 @@
 
 #include "depth_statistics.h"
 #include "dffdepth_properties.h"
+#include "gstcl/device_context.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
 #include "output_pads.h"
@@ -40,6 +44,8 @@ constexpr guint property_stats = dff::depth_properties_end;
 
 /* What dffdepth knows between two buffers. */
 struct State {
+    explicit State(GstElement *element) : device(element) {}
+
     /* Guards settings, statistics and latency. Held for copies only: never while the engine works or a pad
      * pushes. */
     std::mutex mutex;
@@ -49,6 +55,7 @@ struct State {
     GstClockTime latency = 0;
 
     dff::OutputPads outputs;
+    dff::DeviceContext device;
 
     /* The streaming thread's own. */
     dff::StackDepth depth;
@@ -231,13 +238,15 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
     return gst_pad_event_default(pad, parent, event);
 }
 
-static gboolean gst_dff_depth_src_query(GstPad *pad, GstObject *parent, GstQuery *query)
+static gboolean gst_dff_depth_query(GstPad *pad, GstObject *parent, GstQuery *query)
 {
     State &state = *GST_DFF_DEPTH(parent)->state;
     gboolean live = FALSE;
     GstClockTime least = 0, most = GST_CLOCK_TIME_NONE;
 
-    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY)
+    if (state.device.answer(query))
+        return TRUE;
+    if (GST_PAD_IS_SINK(pad) || GST_QUERY_TYPE(query) != GST_QUERY_LATENCY)
         return gst_pad_query_default(pad, parent, query);
     if (!gst_pad_peer_query(GST_DFF_DEPTH(parent)->sink, query))
         return FALSE;
@@ -250,7 +259,7 @@ static gboolean gst_dff_depth_src_query(GstPad *pad, GstObject *parent, GstQuery
 
 static void add_output(GstDffDepth *self, GstPad *pad, GstVideoFormat format)
 {
-    gst_pad_set_query_function(pad, gst_dff_depth_src_query);
+    gst_pad_set_query_function(pad, gst_dff_depth_query);
     gst_pad_use_fixed_caps(pad);
     self->state->outputs.add(GST_ELEMENT(self), pad, format);
     gst_element_add_pad(GST_ELEMENT(self), pad);
@@ -283,7 +292,7 @@ static bool open_device(GstDffDepth *self)
 {
     State &state = *self->state;
     try {
-        std::shared_ptr<dff::Device> device = dff::Device::open(settings_of(state).device);
+        std::shared_ptr<dff::Device> device = state.device.open(settings_of(state).device);
         GST_INFO_OBJECT(self, "computing on %s", device->name().c_str());
         state.depth.start(std::move(device));
         return true;
@@ -328,8 +337,10 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
         state.statistics = {};
         state.latency = 0;
     }
-    if (transition == GST_STATE_CHANGE_READY_TO_NULL)
+    if (transition == GST_STATE_CHANGE_READY_TO_NULL) {
         state.depth.stop();
+        state.device.close();
+    }
     return result;
 }
 
@@ -360,10 +371,11 @@ static void gst_dff_depth_finalize(GObject *object)
 
 static void gst_dff_depth_init(GstDffDepth *self)
 {
-    self->state = new State;
+    self->state = new State(GST_ELEMENT(self));
     self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
     gst_pad_set_chain_function(self->sink, gst_dff_depth_chain);
     gst_pad_set_event_function(self->sink, gst_dff_depth_sink_event);
+    gst_pad_set_query_function(self->sink, gst_dff_depth_query);
     gst_element_add_pad(GST_ELEMENT(self), self->sink);
     add_output(self, gst_pad_new_from_static_template(&src_template, "src"), GST_VIDEO_FORMAT_GRAY16_LE);
 }
@@ -382,13 +394,7 @@ static void gst_dff_depth_class_init(GstDffDepthClass *klass)
     element_class->release_pad = gst_dff_depth_release_pad;
 
     dff::install_depth_properties(object_class);
-    g_object_class_install_property(
-        object_class, property_stats,
-        g_param_spec_boxed(
-            "stats", "Stats",
-            "Stacks so far, those without any depth, milliseconds the last one took, whole and for each "
-            "stage, and the part of its residual that the solver left",
-            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+    dff::DepthStatistics::install_property(object_class, property_stats);
 
     for (GstStaticPadTemplate *pad_template :
          {&sink_template, &src_template, &sparse_template, &confidence_template, &motion_template})

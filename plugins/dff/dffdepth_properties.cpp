@@ -66,7 +66,8 @@ void install_depth_properties(GObjectClass *object_class)
     install(property::Device,
             g_param_spec_string("device", "Device",
                                 "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; "
-                                "empty: the first GPU, else the CPU",
+                                "empty: the one that the application or a neighbour shares, else the first "
+                                "GPU, else the CPU",
                                 defaults.device.c_str(), ready));
     install(property::Method, g_param_spec_enum("method", "Method", "How a stack becomes depth",
                                                 GST_TYPE_DEPTH_METHOD, static_cast<int>(p.method), playing));

@@ -25,24 +25,30 @@ GstAggregatorPad *add_sink(GstAggregator *element, GstStaticPadTemplate *static_
 DepthComposer::DepthComposer(GstAggregator *element, GstStaticPadTemplate *main, GstStaticPadTemplate *depth,
                              const char *needs)
     : element_(element), main_pad_(add_sink(element, main)), depth_pad_(add_sink(element, depth)),
-      needs_(needs)
+      needs_(needs), device_(GST_ELEMENT(element))
 {
+}
+
+/* The element's name in a pipeline description, or its type's where no factory made it. */
+const gchar *DepthComposer::kind() const
+{
+    GstElementFactory *factory = gst_element_get_factory(GST_ELEMENT(element_));
+    return factory ? GST_OBJECT_NAME(factory) : G_OBJECT_TYPE_NAME(element_);
 }
 
 bool DepthComposer::start()
 {
     for (GstAggregatorPad *pad : {main_pad_, depth_pad_})
         if (!gst_pad_is_linked(GST_PAD(pad))) {
-            GST_ELEMENT_ERROR(element_, CORE, PAD,
-                              ("The pad \"%s\" is not linked: %s needs %s", GST_PAD_NAME(pad),
-                               gst_plugin_feature_get_name(gst_element_get_factory(GST_ELEMENT(element_))),
-                               needs_),
-                              (nullptr));
+            GST_ELEMENT_ERROR(
+                element_, CORE, PAD,
+                ("The pad \"%s\" is not linked: %s needs %s", GST_PAD_NAME(pad), kind(), needs_), (nullptr));
             return false;
         }
     try {
+        std::shared_ptr<Device> device = device_.open(device_wish());
         const std::lock_guard lock(mutex);
-        open_device(Device::open(device_wish_));
+        open_device(std::move(device));
         return true;
     } catch (const EngineError &error) {
         post_engine_error(GST_ELEMENT(element_), error);
@@ -55,6 +61,7 @@ bool DepthComposer::start()
 void DepthComposer::stop()
 {
     close_device();
+    device_.close();
     has_main_caps_ = false;
     const std::lock_guard lock(mutex);
     pictures_ = without_depth_ = 0;
@@ -148,8 +155,8 @@ void DepthComposer::install_properties(GObjectClass *object_class, guint device,
         object_class, device,
         g_param_spec_string(
             "device", "Device",
-            "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; empty: the first "
-            "GPU, else the CPU",
+            "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; empty: the one that "
+            "the application or a neighbour shares, else the first GPU, else the CPU",
             "",
             static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)));
     g_object_class_install_property(
@@ -165,17 +172,21 @@ void DepthComposer::set_device(const GValue *value)
     device_wish_ = g_value_get_string(value) ? g_value_get_string(value) : "";
 }
 
-void DepthComposer::get_device(GValue *value)
+std::string DepthComposer::device_wish()
 {
     const std::lock_guard lock(mutex);
-    g_value_set_string(value, device_wish_.c_str());
+    return device_wish_;
+}
+
+void DepthComposer::get_device(GValue *value)
+{
+    g_value_set_string(value, device_wish().c_str());
 }
 
 void DepthComposer::get_stats(GValue *value)
 {
     const std::lock_guard lock(mutex);
-    const std::string name =
-        std::string(gst_plugin_feature_get_name(gst_element_get_factory(GST_ELEMENT(element_)))) + "-stats";
+    const std::string name = std::string(kind()) + "-stats";
     g_value_take_boxed(value,
                        gst_structure_new(name.c_str(), "pictures", G_TYPE_UINT64, pictures_, "without-depth",
                                          G_TYPE_UINT64, without_depth_, "compute-ms", G_TYPE_DOUBLE,

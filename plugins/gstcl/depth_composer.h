@@ -2,13 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/opencl/device.h"
+#include "gstcl/device_context.h"
 
 #include <gst/base/gstaggregator.h>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <string>
 
 namespace dff {
 
@@ -26,11 +24,12 @@ public:
     DepthComposer &operator=(const DepthComposer &) = delete;
 
     /* The aggregator's functions of these names. sink_event takes caps and returns empty for what the base
-     * class has to see. */
+     * class has to see. answer() is for the queries of all pads, and false where the base class answers. */
     bool start();
     void stop();
     GstFlowReturn aggregate();
     std::optional<bool> sink_event(GstAggregatorPad *pad, GstEvent *event);
+    bool answer(GstQuery *query) const { return device_.answer(query); }
     static gboolean propose_allocation(GstAggregator *aggregator, GstAggregatorPad *pad,
                                        GstQuery *decide_query, GstQuery *query);
 
@@ -62,6 +61,8 @@ private:
     /* `depth` may be nullptr. */
     virtual GstBuffer *compose(GstBuffer *main, GstBuffer *depth) = 0;
 
+    const gchar *kind() const;
+    std::string device_wish();
     GstFlowReturn compose_and_push(GstBuffer *main, GstBuffer *depth);
     void account(GstClockTime compute_time, bool with_depth);
 
@@ -69,6 +70,7 @@ private:
     GstAggregatorPad *main_pad_;
     GstAggregatorPad *depth_pad_;
     const char *needs_;
+    DeviceContext device_;
     bool has_main_caps_ = false; /* the streaming thread's own */
 
     /* Under the mutex. */

@@ -11,7 +11,8 @@
  *
  * Colour and depth are matched by their running time; without timestamps the first goes with the first, and
  * so on. A picture without depth comes out flat. Put a queue on every branch, and videoconvert before the
- * colour pad.
+ * colour pad. The OpenCL device is shared with the neighbours, or given by the application: see
+ * gst_context_new_dff_device().
  *
  * A quilt for a Looking Glass Portrait, at half its usual size; file-suffix is what players want at the end
  * of its name:
@@ -277,6 +278,19 @@ static gboolean gst_light_field_compose_sink_event(GstAggregator *aggregator, Gs
     return GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->sink_event(aggregator, pad, event);
 }
 
+static gboolean gst_light_field_compose_sink_query(GstAggregator *aggregator, GstAggregatorPad *pad,
+                                                   GstQuery *query)
+{
+    return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->answer(query) ||
+           GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->sink_query(aggregator, pad, query);
+}
+
+static gboolean gst_light_field_compose_src_query(GstAggregator *aggregator, GstQuery *query)
+{
+    return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->answer(query) ||
+           GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->src_query(aggregator, query);
+}
+
 static gboolean gst_light_field_compose_start(GstAggregator *aggregator)
 {
     return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->start();
@@ -338,6 +352,8 @@ static void gst_light_field_compose_class_init(GstLightFieldComposeClass *klass)
     aggregator_class->fixate_src_caps = gst_light_field_compose_fixate_src_caps;
     aggregator_class->negotiated_src_caps = gst_light_field_compose_negotiated_src_caps;
     aggregator_class->sink_event = gst_light_field_compose_sink_event;
+    aggregator_class->sink_query = gst_light_field_compose_sink_query;
+    aggregator_class->src_query = gst_light_field_compose_src_query;
     aggregator_class->propose_allocation = dff::DepthComposer::propose_allocation;
     aggregator_class->start = gst_light_field_compose_start;
     aggregator_class->stop = gst_light_field_compose_stop;

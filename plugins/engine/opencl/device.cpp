@@ -42,12 +42,17 @@ std::vector<cl::Device> all_devices()
     return devices;
 }
 
+bool has_name(const cl::Device &device, const std::string &wish)
+{
+    return lower(device.getInfo<CL_DEVICE_NAME>()).find(lower(wish)) != std::string::npos;
+}
+
 cl::Device choose(const std::vector<cl::Device> &devices, const std::string &wish)
 {
     const auto is_wished = [&](const cl::Device &device) {
         if (wish.empty())
             return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
-        return lower(device.getInfo<CL_DEVICE_NAME>()).find(lower(wish)) != std::string::npos;
+        return has_name(device, wish);
     };
     const auto found = std::find_if(devices.begin(), devices.end(), is_wished);
     if (found != devices.end())
@@ -82,6 +87,11 @@ Device::Device(cl::Device device, std::optional<KernelStyle> style, std::optiona
 std::string Device::name() const
 {
     return device_.getInfo<CL_DEVICE_NAME>();
+}
+
+bool Device::is_called(const std::string &wish) const
+{
+    return has_name(device_, wish);
 }
 
 std::shared_ptr<Device> Device::open(const std::string &wish)

@@ -32,6 +32,9 @@ public:
     ProgramCache &programs() const { return *programs_; }
     std::string name() const;
 
+    /* The name contains `wish`, ignoring case. */
+    bool is_called(const std::string &wish) const;
+
     /* The device works in the host's memory, so that stacks need not be copied to it. */
     bool works_in_place() const { return works_in_place_; }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-/* What an application in C does with the metas: it includes one header and links one library. */
+/* What an application in C does with the metas and contexts: it includes one header and links one library. */
 #include <gst/dff/dff.h>
 
 #undef NDEBUG
@@ -31,6 +31,10 @@ int main(int argc, char *argv[])
     depth.unit = GST_DEPTH_UNIT_DIOPTRE;
     gst_buffer_add_depth_meta(buffer, &depth);
     assert(gst_buffer_get_depth_meta(buffer)->unit == GST_DEPTH_UNIT_DIOPTRE);
+
+    GstContext *context = gst_context_new_dff_device("GeForce");
+    assert(gst_context_has_context_type(context, GST_DFF_DEVICE_CONTEXT_TYPE));
+    gst_context_unref(context);
 
     gst_buffer_unref(buffer);
     gst_deinit();

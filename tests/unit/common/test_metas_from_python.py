@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""What an application in Python does with the metas, by gi.repository.GstDff."""
+"""What an application in Python does with the metas and contexts, by gi.repository.GstDff."""
 import math
 import unittest
 
@@ -71,6 +71,14 @@ class Metas(unittest.TestCase):
         self.assertEqual(info.get_size(), 2000)
         with self.assertRaises(TypeError):
             GstDff.FocalStackInfo.new_from_caps(Gst.Caps.from_string("video/x-raw,format=GRAY8"))
+
+    def test_a_device_is_chosen_for_a_pipeline(self):
+        context = GstDff.context_new_dff_device("GeForce")
+        self.assertEqual(context.get_context_type(), GstDff.DFF_DEVICE_CONTEXT_TYPE)
+        self.assertEqual(context.get_structure().get_string("device"), "GeForce")
+        pipeline = Gst.Pipeline.new()
+        pipeline.set_context(context)
+        self.assertEqual(pipeline.get_context(GstDff.DFF_DEVICE_CONTEXT_TYPE).get_structure().get_string("device"), "GeForce")
 
 
 if __name__ == "__main__":

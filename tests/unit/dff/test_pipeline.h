@@ -28,6 +28,7 @@ public:
     TestPipeline(const TestPipeline &) = delete;
     TestPipeline &operator=(const TestPipeline &) = delete;
 
+    GstElement *bin() const { return pipeline_; }
     GstElement *element(const char *name) const;
     void stop() { gst_element_set_state(pipeline_, GST_STATE_NULL); }
     void play() { gst_element_set_state(pipeline_, GST_STATE_PLAYING); }
