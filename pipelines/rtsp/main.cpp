@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 /* dff-rtsp-server: depth and all-in-focus video by RTSP. `dff-rtsp-server --help` says how. */
 #include "server.h"
+#include "warm_up.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,9 @@ namespace {
 struct LoopUnref {
     void operator()(GMainLoop *loop) const { g_main_loop_unref(loop); }
 };
+
+/* Kernels compile in seconds; in minutes where others have the processors. */
+constexpr std::chrono::seconds warm_up_patience{120};
 
 gboolean quit(gpointer loop)
 {
@@ -25,6 +29,8 @@ void serve(const dff::ServerOptions &options)
     const dff::ObjectPointer<GstElementFactory> extension(gst_element_factory_find("rtphdrextdff"));
     if (!extension)
         g_warning("Plane and depth facts of each frame are not sent: the plug-in dffrtp is missing");
+    g_message("The source is tried");
+    dff::warm_up(options.launch, warm_up_patience);
     for (const std::string &url : server.urls())
         std::printf("%s\n", url.c_str());
     std::fflush(stdout);

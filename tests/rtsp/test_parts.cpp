@@ -4,6 +4,7 @@
 #include "back_off.h"
 #include "depth_attributes.h"
 #include "server.h"
+#include "warm_up.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -71,6 +72,29 @@ TEST(SourcePipeline, a_pipeline_without_outputs_is_refused)
     EXPECT_THROW(outputs_of("videotestsrc name=depth ! fakesink"), std::invalid_argument);
     EXPECT_THROW(outputs_of("videotestsrc ! no-such-element"), std::invalid_argument);
     EXPECT_THROW(outputs_of(""), std::invalid_argument);
+}
+
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+TEST(WarmUp, lasts_until_each_output_has_given_a_frame)
+{
+    const auto start = steady_clock::now();
+    dff::warm_up("videotestsrc is-live=true ! video/x-raw,framerate=20/1 ! identity name=aif "
+                 "videotestsrc ! identity sleep-time=300000 name=depth",
+                 seconds(60));
+    EXPECT_GE(steady_clock::now() - start, milliseconds(300));
+    EXPECT_LT(steady_clock::now() - start, seconds(50));
+}
+
+TEST(WarmUp, a_source_that_fails_ends_or_is_silent_is_not_waited_for)
+{
+    const auto start = steady_clock::now();
+    dff::warm_up("filesrc location=/no/such/file ! identity name=depth", seconds(60));
+    dff::warm_up("videotestsrc num-buffers=0 ! identity name=depth", seconds(60));
+    EXPECT_LT(steady_clock::now() - start, seconds(50));
+    dff::warm_up("videotestsrc is-live=true ! valve drop=true ! identity name=depth", seconds(1));
+    EXPECT_LT(steady_clock::now() - start, seconds(58));
 }
 
 dff::ServerOptions parse(std::vector<std::string> arguments)

@@ -5,6 +5,7 @@
 #include "server_process.h"
 
 #include <cmath>
+#include <filesystem>
 #include <gst/dff/dff.h>
 #include <gtest/gtest.h>
 #include <memory>
@@ -181,6 +182,29 @@ TEST(Streams, one_capture_serves_all_and_stops_after_the_last)
 
     Receiver third(receive_depth(server, "tcp"));
     EXPECT_NE(third.next_buffer(), nullptr);
+}
+
+/* Every kernel that runs leaves files in PoCL's cache. */
+TEST(Streams, kernels_are_compiled_before_the_server_is_ready)
+{
+    g_autofree char *cache = g_dir_make_tmp("dff-kernels-XXXXXX", nullptr);
+    const std::string before = g_getenv("POCL_CACHE_DIR") ? g_getenv("POCL_CACHE_DIR") : "";
+    g_setenv("POCL_CACHE_DIR", cache, TRUE);
+    ServerProcess server(sweeps + "is-live=true " + small +
+                         "! focalstackmux ! dffdepth method=paper name=depth");
+    before.empty() ? g_unsetenv("POCL_CACHE_DIR")
+                   : static_cast<void>(g_setenv("POCL_CACHE_DIR", before.c_str(), TRUE));
+
+    const auto files = [&] {
+        const std::filesystem::recursive_directory_iterator all(cache);
+        return std::count_if(begin(all), end(all),
+                             [](const auto &entry) { return entry.path().extension() == ".so"; });
+    };
+    const auto compiled = files();
+    EXPECT_GT(compiled, 0);
+    EXPECT_NE(Receiver(receive_depth(server, "tcp")).next_buffer(), nullptr);
+    EXPECT_EQ(files(), compiled);
+    std::filesystem::remove_all(cache);
 }
 
 } // namespace
