@@ -14,7 +14,9 @@
  * - `line` with `sync-line`: the frames' numbers, the camera's clock, the arrival of the frames and the edges
  * of the sync line must agree about it. If they do not, the rest of that sweep is dropped; labels come again
  * with the next edge. The first sweep (three, if neither `run-line` nor the lens starts the sequencer) shows
- * which frame is of which edge and is dropped.
+ * which frame is of which edge and is dropped. With `lens=fpga:...` the number of triggers that the sequencer
+ * has given, read over I2C in each sweep, must agree too; while it cannot be read, a warning says so and the
+ * others decide alone.
  * - `line` without `sync-line`: the first frame after the sequencer was started is plane 0, then the frames'
  * numbers and the time between them must agree. If they do not, the sequencer is stopped and started again by
  * `run-line` or the lens; where neither is there, that is an error, since nobody can tell which plane comes
@@ -22,7 +24,6 @@
  * - `software`: this element moves the lens, waits until it rests, and tells the camera to expose. Numbers,
  * times and commands must agree.
  * - `free-run`: nothing moves in step; frames are counted, those that were lost by their numbers.
- * sweep begins.
  *
  * Silence of the trigger is no error, unless `trigger-timeout` says so. A camera that does not answer any
  * more ends the stream with an error; set the pipeline to NULL and PLAYING again when it is back. Buffers
@@ -274,7 +275,7 @@ static void gst_lens_sweep_src_class_init(GstLensSweepSrcClass *klass)
             "stats", "Statistics",
             "Frames since the start: delivered, lost (of those incomplete, and underruns), doubled, "
             "unlabelled; disagreements, dropped-sweeps, wrong-edges, restarts; triggers, where the "
-            "sequencer of the lens counts them",
+            "sequencer of the lens counts them, and wrong-counts, at which that contradicted the sync line",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
     element_class->change_state = change_state;

@@ -107,10 +107,19 @@ static GstClockTime running_time_of(GstLensSweepSrc *self, gint64 host_ns)
     return moment < base ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(moment - base);
 }
 
-/* Publishes the counts; a QoS message for planes that are missing. */
+/* Publishes the counts; a QoS message for planes that are missing, a warning of a count that cannot be read.
+ */
 static void report(GstLensSweepSrc *self)
 {
     GstLensSweepSrcState &state = *self->state;
+    const std::string complaint = state.capture->take_complaint();
+    if (!complaint.empty())
+        GST_ELEMENT_WARNING(
+            self, RESOURCE, READ,
+            ("The sequencer's count of triggers cannot be read: %s. The sync line alone tells "
+             "planes until it can. Check the wires and the speed of the I2C bus.",
+             complaint.c_str()),
+            (nullptr));
     const dff::CaptureCounts counts = state.capture->counts();
     GST_OBJECT_LOCK(self);
     state.counts = counts;

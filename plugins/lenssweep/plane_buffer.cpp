@@ -66,8 +66,8 @@ GstStructure *capture_stats(const dff::CaptureCounts &counts, guint64 delivered)
         counts.underruns, "doubled", G_TYPE_UINT64, counts.labels.doubled, "unlabelled", G_TYPE_UINT64,
         counts.labels.unlabelled, "disagreements", G_TYPE_UINT64, counts.labels.disagreements,
         "dropped-sweeps", G_TYPE_UINT64, counts.labels.dropped_sweeps, "wrong-edges", G_TYPE_UINT64,
-        counts.wrong_edges, "triggers", G_TYPE_UINT64, counts.triggers, "restarts", G_TYPE_UINT64,
-        counts.restarts, nullptr);
+        counts.wrong_edges, "wrong-counts", G_TYPE_UINT64, counts.wrong_counts, "triggers", G_TYPE_UINT64,
+        counts.triggers, "restarts", G_TYPE_UINT64, counts.restarts, nullptr);
 }
 
 guint64 missing_planes(const dff::CaptureCounts &counts)

@@ -277,6 +277,7 @@ CaptureCounts SweepCapture::counts() const
     counts.labels.dropped_sweeps += labels.dropped_sweeps;
     counts.wrong_edges += triggers_ ? triggers_->wrong_edges() : 0;
     counts.triggers += triggers_ ? triggers_->given().value_or(0) : 0;
+    counts.wrong_counts += triggers_ ? triggers_->wrong_counts() : 0;
     counts.incomplete = incomplete_;
     counts.labels.unlabelled += unlabelled_;
     counts.underruns = underruns_ + (stream_ ? stream_->underruns() : 0);

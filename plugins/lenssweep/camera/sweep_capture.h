@@ -24,8 +24,9 @@ struct CaptureCounts {
     std::uint64_t incomplete = 0;  /* frames of which packets are missing; counted as lost as well */
     std::uint64_t underruns = 0;   /* frames for which no buffer was free; likewise */
     std::uint64_t wrong_edges = 0; /* of the sync line */
-    std::uint64_t triggers = 0;    /* as the lens's sequencer counts them, each second and at the end */
-    std::uint64_t restarts = 0;    /* of the sequencer, since planes could not be told any more */
+    std::uint64_t triggers = 0; /* as the lens's sequencer counts them, each sweep or second and at the end */
+    std::uint64_t wrong_counts = 0; /* readings of that count which contradict the sync line */
+    std::uint64_t restarts = 0;     /* of the sequencer, since planes could not be told any more */
 };
 
 /* A frame whose plane is known. */
@@ -68,6 +69,9 @@ public:
     void interrupt();
 
     CaptureCounts counts() const;
+
+    /* What the user should know although planes go on; empty if it was told already. */
+    std::string take_complaint() { return triggers_ ? triggers_->take_complaint() : std::string(); }
 
     /* From the start of an exposure to the arrival of the frame, at the most that labels can be told at. */
     std::int64_t latency_ns() const { return timing_.exposure_ns + timing_.transfer_ns + timing_.period_ns; }

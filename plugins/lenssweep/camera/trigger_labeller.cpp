@@ -14,10 +14,14 @@ constexpr std::int64_t drift_ppm = 200;
 /* One may be late by just what a clock jumped. */
 constexpr unsigned frames_to_confirm = 2;
 
+/* Readings of the count, one a sweep, after which waiting is of no use. */
+constexpr unsigned wrong_counts_to_give_up = 3;
+
 } // namespace
 
-TriggerLabeller::TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers)
-    : timing_(timing), numbers_(numbers), triggers_(triggers), search_(timing, numbers)
+TriggerLabeller::TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers,
+                                 const TriggerCount *count)
+    : timing_(timing), numbers_(numbers), triggers_(triggers), count_(count), search_(timing, numbers)
 {
 }
 
@@ -35,6 +39,8 @@ void TriggerLabeller::start(Beginning beginning, std::int64_t)
 FrameVerdict TriggerLabeller::label(const CameraFrame &frame)
 {
     FrameVerdict verdict;
+    if (count_ && count_->wrong_in_a_row() >= wrong_counts_to_give_up)
+        lost_ = true;
     if (const auto reason = ledger_.enter(frame.id))
         verdict.reason = *reason;
     else
@@ -50,7 +56,7 @@ FrameVerdict TriggerLabeller::seek(const CameraFrame &frame)
     anchor_ = search_.add(frame, triggers_);
     lost_ = search_.failed();
     if (anchor_) {
-        newest_ = Placed{frame.id, anchor_->index, triggers_.rhythm()};
+        newest_ = placed(frame, {anchor_->index, triggers_.time_of(anchor_->index)});
         verified_ns_ = frame.arrival_ns;
         disagreeing_ = 0;
         unconfirmed_ = 0;
@@ -104,17 +110,41 @@ FrameVerdict TriggerLabeller::doubt(const CameraFrame &frame, const Trigger &tri
 {
     disagreeing_++;
     if (frame.camera_ns != 0)
-        newest_ = Placed{frame.id, trigger.index, triggers_.rhythm()};
+        newest_ = placed(frame, trigger);
     ledger_.drop_sweep(sweep);
     return {std::nullopt, Unlabelled::Disagree};
+}
+
+TriggerLabeller::Placed TriggerLabeller::placed(const CameraFrame &frame, const Trigger &trigger) const
+{
+    const unsigned rhythm = triggers_.rhythm();
+    return {frame.id, trigger.index, rhythm, count_ ? count_->ordinal(trigger, rhythm) : std::nullopt};
+}
+
+bool TriggerLabeller::count_agrees() const
+{
+    if (!count_)
+        return true;
+    const auto word = count_->word(triggers_.rhythm());
+    return word == TriggerCount::Word::Agrees || word == TriggerCount::Word::None;
+}
+
+/* Whether the number is as many after the newest one's as the trigger is. In another rhythm only the count
+ * tells how many those are. */
+bool TriggerLabeller::follows(const CameraFrame &frame, const Trigger &trigger) const
+{
+    const Placed now = placed(frame, trigger);
+    if (now.ordinal && newest_->ordinal)
+        return numbers_.apart(newest_->id, now.id, *now.ordinal - *newest_->ordinal);
+    if (now.rhythm != newest_->rhythm)
+        return !now.ordinal; /* it could be told, and was not yet */
+    return numbers_.apart(newest_->id, now.id, now.index - newest_->index);
 }
 
 bool TriggerLabeller::agrees(const CameraFrame &frame, std::int64_t exposed_ns, const Trigger &trigger)
 {
     const bool timely = std::abs(exposed_ns - trigger.time_ns) <= timing_.tolerance_ns();
-    const bool follows = newest_->rhythm != triggers_.rhythm() ||
-                         numbers_.apart(newest_->id, frame.id, trigger.index - newest_->index);
-    if (!timely || !follows) {
+    if (!timely || !follows(frame, trigger)) {
         counts_.disagreements++;
         unconfirmed_ = frames_to_confirm;
         return false;
@@ -140,12 +170,16 @@ FrameVerdict TriggerLabeller::place(const CameraFrame &frame)
         return place_untriggered(exposed_ns);
     const auto sweep = static_cast<std::uint64_t>(trigger->index / timing_.planes);
     const auto plane = static_cast<unsigned>(trigger->index % timing_.planes);
+    if (!count_agrees()) {
+        ledger_.drop_sweep(sweep);
+        return {std::nullopt, Unlabelled::Disagree};
+    }
     if (!agrees(frame, exposed_ns, *trigger))
         return doubt(frame, *trigger, sweep);
 
     follow(frame, *trigger);
     if (newest_->rhythm != triggers_.rhythm() || trigger->index > newest_->index)
-        newest_ = Placed{frame.id, trigger->index, triggers_.rhythm()};
+        newest_ = placed(frame, *trigger);
     const std::int64_t begin_ns = trigger->time_ns - plane * timing_.period_ns;
     if (untriggered_ns_ && std::abs(begin_ns - *untriggered_ns_) < timing_.sweep_ns &&
         *untriggered_ns_ > begin_ns - timing_.tolerance_ns())

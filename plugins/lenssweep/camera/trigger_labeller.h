@@ -6,6 +6,7 @@
 #include "frame_ledger.h"
 #include "plane_labeller.h"
 #include "sweep_timing.h"
+#include "trigger_count.h"
 #include "trigger_times.h"
 
 #include <optional>
@@ -19,14 +20,20 @@ namespace dff {
  * arrived as long after its trigger as frames do. If not, the rest of its sweep has no label; from the next
  * sweep on labels come again, as soon as two frames arrived as long after their triggers as frames do.
  *
+ * Where the triggers are counted by who gives them, that count must agree as well, and numbers are held
+ * against it when the rhythm of the triggers is another than before. A count that contradicts the edges drops
+ * the sweep, and those after it until it agrees again; if it does not for some sweeps, the triggers must
+ * begin from rest. Without a count, or while it cannot be read, the others decide alone.
+ *
  * The camera's clock is followed. It may run 200 ppm off the host's; after a silence in which that would have
  * grown to three eighths of a period it must be found anew. Where that, or a clock that was set, leaves more
  * than one answer, triggers that can begin from rest must.
  */
 class TriggerLabeller : public PlaneLabeller {
 public:
-    /* The triggers outlive this object. */
-    TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers);
+    /* The count may be null. Both outlive this object. */
+    TriggerLabeller(const SweepTiming &timing, FrameNumbers numbers, TriggerTimes &triggers,
+                    const TriggerCount *count = nullptr);
 
     void start(Beginning beginning, std::int64_t host_ns) override;
     FrameVerdict label(const CameraFrame &frame) override;
@@ -38,10 +45,14 @@ private:
         std::uint64_t id;
         std::int64_t index;
         unsigned rhythm;
+        std::optional<std::int64_t> ordinal; /* of its trigger, where they are counted */
     };
 
     FrameVerdict seek(const CameraFrame &frame);
     FrameVerdict place(const CameraFrame &frame);
+    Placed placed(const CameraFrame &frame, const Trigger &trigger) const;
+    bool count_agrees() const;
+    bool follows(const CameraFrame &frame, const Trigger &trigger) const;
     FrameVerdict place_untriggered(std::int64_t exposed_ns);
     FrameVerdict doubt(const CameraFrame &frame, const Trigger &trigger, std::uint64_t sweep);
     bool agrees(const CameraFrame &frame, std::int64_t exposed_ns, const Trigger &trigger);
@@ -51,6 +62,7 @@ private:
     SweepTiming timing_;
     FrameNumbers numbers_;
     TriggerTimes &triggers_;
+    const TriggerCount *count_;
     LabelCounts counts_;
     FrameLedger ledger_{numbers_, counts_};
     AnchorSearch search_;

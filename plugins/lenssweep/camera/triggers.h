@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 
 namespace dff {
 
@@ -29,7 +30,7 @@ public:
 
     /* Throws if the lens or a line has failed by itself. To be called now and then, by the thread of start().
      */
-    virtual void check();
+    void check();
 
     /* Triggers that were given since the first start(), by the word of who gives them; empty if they are not
      * counted there. */
@@ -37,6 +38,12 @@ public:
 
     /* Edges of the sync line that were not believed. */
     virtual std::uint64_t wrong_edges() const { return 0; }
+
+    /* Readings of that count which contradict the edges. */
+    virtual std::uint64_t wrong_counts() const { return 0; }
+
+    /* What the user should know although labels go on; empty if it was told already. */
+    virtual std::string take_complaint() { return {}; }
 
     FrameVerdict label(const CameraFrame &frame);
     bool lost() const;

@@ -111,8 +111,11 @@ FpgaLensStatus FpgaLens::status()
 std::uint32_t FpgaLens::read_counter(Word low, Word high)
 {
     /* Reading the low word latches the high one */
-    const std::uint32_t low_word = read(low);
-    return static_cast<std::uint32_t>(read(high)) << 16 | low_word;
+    const auto both = [&] {
+        const std::uint32_t low_word = bus_.read_word(static_cast<std::uint8_t>(low));
+        return static_cast<std::uint32_t>(bus_.read_word(static_cast<std::uint8_t>(high))) << 16 | low_word;
+    };
+    return with_retries(both, [] {});
 }
 
 std::uint32_t FpgaLens::sweep_count()

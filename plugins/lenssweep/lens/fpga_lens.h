@@ -51,7 +51,8 @@ public:
 
     FpgaLensStatus status();
 
-    /* Sweeps begun since the sequencer's reset: one for each sync pulse. */
+    /* Sweeps begun since the sequencer's reset: one for each sync pulse. A count that cannot be read does not
+     * stop the sweep. */
     std::uint32_t sweep_count();
 
     /* Triggers given since the sequencer's reset. */

@@ -72,10 +72,11 @@ public:
     /* Throws LensError, with the reason, if the sequencer has stopped by itself. */
     virtual void check() = 0;
 
-    /* Sweeps begun since the sequencer's reset: one for each pulse of the sync line. */
+    /* Sweeps begun since the sequencer's reset: one for each pulse of the sync line. A count that cannot be
+     * read throws LensError, and the sweep goes on. */
     virtual std::uint32_t sweep_count() = 0;
 
-    /* Triggers given since the sequencer's reset. */
+    /* Triggers given since the sequencer's reset; likewise. */
     virtual std::uint32_t frame_count() = 0;
 };
 

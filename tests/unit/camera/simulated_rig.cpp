@@ -27,7 +27,7 @@ std::uint64_t next_id(Rig &rig)
 void play_edge(const Rig &rig, std::int64_t trigger_ns, std::mt19937_64 &random,
                std::vector<RigEvent> &events)
 {
-    const std::int64_t time_ns = trigger_ns + up_to(50'000, random);
+    const std::int64_t time_ns = trigger_ns + rig.edge_off_ns + up_to(50'000, random);
     const std::int64_t period_ns = rig.timing.period_ns;
     const auto see = [&](std::int64_t at_ns, std::int64_t late_ns) {
         events.push_back({RigEvent::Edge, at_ns + late_ns + 20'000, at_ns, {}, 0, 0});
@@ -77,7 +77,9 @@ std::vector<RigEvent> play(Rig &rig, std::int64_t begin_ns, std::uint64_t first_
     const std::int64_t flyback_ns = rig.timing.sweep_ns - rig.timing.planes * rig.timing.period_ns;
     std::int64_t trigger_ns = begin_ns;
     std::uint64_t lag_ends = 0;
+    std::uint64_t edges_off_end = 0;
     rig.lag_ns = 0;
+    rig.edge_off_ns = 0;
     for (std::uint64_t sweep = first_sweep; sweep < first_sweep + sweeps; sweep++) {
         if (sweep >= lag_ends)
             rig.lag_ns = 0;
@@ -86,7 +88,14 @@ std::vector<RigEvent> play(Rig &rig, std::int64_t begin_ns, std::uint64_t first_
             rig.lag_ns = up_to(6 * rig.timing.period_ns, random);
             lag_ends = sweep + 1 + random() % 8;
         }
+        if (sweep >= edges_off_end)
+            rig.edge_off_ns = 0;
+        if (happens(rig.faults.edges_off, random)) {
+            rig.edge_off_ns = up_to(rig.timing.planes - 1, random) * rig.timing.period_ns;
+            edges_off_end = sweep + 3 + random() % 6;
+        }
         for (unsigned plane = 0; plane < rig.timing.planes; plane++) {
+            rig.triggers_ns.push_back(trigger_ns);
             if (plane == 0)
                 play_edge(rig, trigger_ns, random, events);
             play_frame(rig, trigger_ns, sweep, plane, random, events);

@@ -20,6 +20,7 @@ struct Faults {
     double edge_doubled = 0; /* is seen twice */
     double edge_late = 0;    /* is heard of up to three periods late */
     double edge_wrong = 0;   /* comes where there is none */
+    double edges_off = 0;    /* all edges of up to eight sweeps come at another plane */
     double clock_jump = 0;   /* the camera's clock is set, before a trigger, up to three periods off */
     double pause = 0;        /* the triggers rest for up to two seconds after one */
     double lag = 0;          /* all frames of up to eight sweeps are up to six periods late */
@@ -36,6 +37,8 @@ struct Rig {
     std::int64_t transfer_ns = 0; /* from the end of an exposure to the arrival, beside the link's share */
     std::int64_t lag_ns = 0;      /* and while frames lag */
     std::int64_t jitter_ns = 0;   /* of arrivals */
+    std::int64_t edge_off_ns = 0; /* what edges are late by, while they are off */
+    std::vector<std::int64_t> triggers_ns; /* all that were given */
     Faults faults;
 };
 

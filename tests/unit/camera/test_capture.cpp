@@ -6,6 +6,7 @@
 #include "lenssweep/camera/sweep_capture.h"
 
 #include <atomic>
+#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <thread>
@@ -39,9 +40,11 @@ dff::CapturedPlane next_plane(dff::SweepCapture &capture)
     }
 }
 
-/* A lens in the hands of a sequencer that only counts. */
+/* A lens in the hands of a sequencer that only counts, as far as it can be read. */
 struct CountingSequencer : dff::SequencedLens {
-    std::uint32_t count = 0;
+    std::atomic<std::uint32_t> count = 0;
+    std::atomic<bool> readable = true;
+    std::atomic<int> readings = 0;
 
     void prepare(const dff::LensSweep &) override {}
     void start() override {}
@@ -50,8 +53,41 @@ struct CountingSequencer : dff::SequencedLens {
     int code(unsigned) const override { return -1; }
     void check() override {}
     std::uint32_t sweep_count() override { return count / 6; }
-    std::uint32_t frame_count() override { return count; }
+    std::uint32_t frame_count() override
+    {
+        readings++;
+        if (!readable)
+            throw dff::LensError("no acknowledge");
+        return count;
+    }
 };
+
+/* A sync line whose edges come when the test says so. */
+struct TestedLine : dff::EdgeLine {
+    std::atomic<std::int64_t> next_ns = 0;
+
+    std::optional<dff::LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds) override
+    {
+        while (!stop.stop_requested()) {
+            if (const std::int64_t time_ns = next_ns.exchange(0))
+                return dff::LineEdge{static_cast<std::uint64_t>(time_ns)};
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return std::nullopt;
+    }
+};
+
+bool comes_true(const std::function<bool()> &what)
+{
+    for (int i = 0; i < 10'000 && !what(); i++)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return what();
+}
+
+const dff::FrameNumbers sixteen_bits(dff::FrameNumbering::GigE16);
+
+/* Long enough for a machine that is busy. */
+constexpr dff::SweepTiming slow_sweeps{4, 200'000'000, 800'000'000, 6'000'000};
 
 } // namespace
 
@@ -148,14 +184,12 @@ TEST(LineTriggers, count_what_the_sequencer_has_given)
 {
     CountingSequencer lens;
     lens.count = 0xffff'fff0; /* of those before us */
-    dff::LineTriggers triggers({6, 6'400'000, 38'400'000, 6'000'000},
-                               dff::FrameNumbers(dff::FrameNumbering::GigE16), {&lens, nullptr, nullptr},
+    dff::LineTriggers triggers({6, 6'400'000, 38'400'000, 6'000'000}, sixteen_bits, {&lens, nullptr, nullptr},
                                [] {});
     EXPECT_EQ(triggers.given(), 0U);
     triggers.start();
     lens.count += 10;
-    triggers.check();
-    EXPECT_EQ(triggers.given(), 10U);
+    EXPECT_TRUE(comes_true([&] { return triggers.given() == 10U; })) << "each second";
     lens.count += 10; /* its 32 bits wrap */
     triggers.stop();
     EXPECT_EQ(triggers.given(), 20U);
@@ -164,6 +198,39 @@ TEST(LineTriggers, count_what_the_sequencer_has_given)
     lens.count += 6;
     triggers.stop();
     EXPECT_EQ(triggers.given(), 26U);
+}
+
+TEST(LineTriggers, read_the_count_in_each_sweep_and_hold_it_against_the_edge)
+{
+    CountingSequencer lens;
+    TestedLine line;
+    dff::LineTriggers triggers(slow_sweeps, sixteen_bits, {&lens, nullptr, &line}, [] {});
+    triggers.start();
+    lens.count = 1;
+    line.next_ns = dff::host_now_ns();
+    ASSERT_TRUE(comes_true([&] { return triggers.given() == 1U; }));
+    EXPECT_EQ(triggers.wrong_counts(), 0U);
+    triggers.start();
+    lens.count = 1 + 3; /* plane 2 */
+    line.next_ns = dff::host_now_ns();
+    EXPECT_TRUE(comes_true([&] { return triggers.wrong_counts() == 1U; }));
+    EXPECT_EQ(triggers.take_complaint(), "");
+}
+
+TEST(LineTriggers, tell_once_that_the_count_cannot_be_read_and_go_on)
+{
+    CountingSequencer lens;
+    dff::LineTriggers triggers(slow_sweeps, sixteen_bits, {&lens, nullptr, nullptr}, [] {});
+    triggers.start();
+    lens.readable = false;
+    const int before = lens.readings;
+    ASSERT_TRUE(comes_true([&] { return lens.readings >= before + 2; }));
+    EXPECT_NE(triggers.take_complaint().find("no acknowledge"), std::string::npos);
+    EXPECT_EQ(triggers.take_complaint(), "");
+    triggers.check();
+    lens.count += 7;
+    lens.readable = true;
+    EXPECT_TRUE(comes_true([&] { return triggers.given() == 7U; }));
 }
 
 TEST(SweepCapture, starts_and_stops_as_often_as_wanted)

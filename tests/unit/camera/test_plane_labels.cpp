@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-/* Thousands of sequences in which frames and edges are lost, doubled, late and out of order: not one label
- * may be wrong. DFF_SEQUENCES says how many, DFF_SEED where to begin. */
+/* Thousands of sequences in which frames and edges are lost, doubled, late and out of order, and counts of
+ * triggers are read late or not at all: not one label may be wrong. DFF_SEQUENCES says how many, DFF_SEED
+ * where to begin. */
 #include "lenssweep/camera/counting_labeller.h"
 #include "lenssweep/camera/sync_rhythm.h"
 #include "lenssweep/camera/trigger_labeller.h"
 #include "simulated_rig.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <map>
@@ -93,9 +95,18 @@ struct Tally {
     std::uint64_t wrong = 0;
 };
 
+/* What the host learns beside the frames. */
+class Witnesses {
+public:
+    virtual ~Witnesses() = default;
+    virtual void rest(const Rig &) {}
+    virtual void until(const Rig &, std::int64_t /*now_ns*/) {}
+    virtual void edge(const RigEvent &) {}
+};
+
 /* Several starts of one rig, each of some sweeps. */
-template <typename Labeller, typename OnEdge>
-void run(Rig rig, Labeller &labeller, OnEdge on_edge, bool from_rest, std::mt19937_64 &random, Tally &tally)
+void run(Rig rig, PlaneLabeller &labeller, Witnesses &witnesses, bool from_rest, std::mt19937_64 &random,
+         Tally &tally)
 {
     Judge judge;
     std::uint64_t sweep = 0;
@@ -103,6 +114,7 @@ void run(Rig rig, Labeller &labeller, OnEdge on_edge, bool from_rest, std::mt199
     for (int start = 0; start < 3; start++) {
         const auto beginning =
             from_rest ? PlaneLabeller::Beginning::FromRest : PlaneLabeller::Beginning::UnderWay;
+        witnesses.rest(rig);
         const unsigned sweeps = 10 + static_cast<unsigned>(random() % 20);
         const auto events = play(rig, now_ns, sweep, sweeps, random);
         /* Under way: whoever listens begins in the middle. */
@@ -110,8 +122,9 @@ void run(Rig rig, Labeller &labeller, OnEdge on_edge, bool from_rest, std::mt199
         labeller.start(beginning, now_ns);
         for (std::size_t i = skipped; i < events.size(); i++) {
             const RigEvent &event = events[i];
+            witnesses.until(rig, event.seen_ns);
             if (event.kind == RigEvent::Edge) {
-                on_edge(event.time_ns);
+                witnesses.edge(event);
                 continue;
             }
             const auto verdict = labeller.label(event.frame);
@@ -128,12 +141,130 @@ void run(Rig rig, Labeller &labeller, OnEdge on_edge, bool from_rest, std::mt199
     tally.wrong += judge.wrong;
 }
 
+class SyncLine : public Witnesses {
+public:
+    explicit SyncLine(const Rig &rig) : rhythm(rig.timing) {}
+    void edge(const RigEvent &event) override { rhythm.edge(event.time_ns); }
+
+    dff::SyncRhythm rhythm;
+};
+
 void run_synced(const Rig &rig, bool from_rest, std::mt19937_64 &random, Tally &tally)
 {
-    dff::SyncRhythm rhythm(rig.timing);
-    dff::TriggerLabeller labeller(rig.timing, dff::FrameNumbers(rig.numbering), rhythm);
-    run(
-        rig, labeller, [&](std::int64_t time_ns) { rhythm.edge(time_ns); }, from_rest, random, tally);
+    SyncLine line(rig);
+    dff::TriggerLabeller labeller(rig.timing, dff::FrameNumbers(rig.numbering), line.rhythm);
+    run(rig, labeller, line, from_rest, random, tally);
+}
+
+/* How the triggers are counted: half a period after each edge that is believed, the count is read over a bus.
+ */
+struct Bus {
+    std::int64_t delay_ns = 0; /* to the begin of a reading, beside that, at the most */
+    std::int64_t time_ns = 0;  /* and from there to its end */
+    double fails = 0;          /* how often */
+};
+
+class CountedLine : public SyncLine {
+public:
+    CountedLine(const Rig &rig, const Bus &bus, std::uint64_t seed)
+        : SyncLine(rig), count(rig.timing), timing_(rig.timing), bus_(bus), random_(seed),
+          first_(static_cast<std::uint32_t>(seed))
+    {
+        first_ = 0U - first_ % 500; /* wraps soon */
+    }
+
+    void rest(const Rig &rig) override
+    {
+        reading_.reset();
+        asked_ = false;
+        const auto given = first_ + static_cast<std::uint32_t>(rig.triggers_ns.size());
+        count.restart(fails() ? std::nullopt : std::optional(given));
+    }
+
+    void edge(const RigEvent &event) override
+    {
+        if (!rhythm.edge(event.time_ns))
+            return;
+        asked_ = reading_.has_value();
+        if (!asked_)
+            read_after(std::max(event.seen_ns, event.time_ns + timing_.period_ns / 2));
+    }
+
+    void until(const Rig &rig, std::int64_t now_ns) override
+    {
+        while (reading_ && reading_->after_ns <= now_ns) {
+            finish(rig);
+            const std::int64_t end_ns = reading_->after_ns;
+            reading_.reset();
+            if (std::exchange(asked_, false))
+                read_after(end_ns);
+        }
+    }
+
+    dff::TriggerCount count;
+
+private:
+    bool fails() { return std::bernoulli_distribution(bus_.fails)(random_); }
+
+    std::int64_t moment(std::int64_t from_ns, std::int64_t to_ns)
+    {
+        return std::uniform_int_distribution(from_ns, to_ns)(random_);
+    }
+
+    void read_after(std::int64_t time_ns)
+    {
+        const std::int64_t before_ns = moment(time_ns, time_ns + bus_.delay_ns);
+        reading_ = dff::CountReading{0, before_ns, moment(before_ns, before_ns + bus_.time_ns)};
+    }
+
+    void finish(const Rig &rig)
+    {
+        if (fails()) {
+            count.withdraw();
+            return;
+        }
+        const std::int64_t taken_ns = moment(reading_->before_ns, reading_->after_ns);
+        const auto &given = rig.triggers_ns;
+        const auto until = std::upper_bound(given.begin(), given.end(), taken_ns) - given.begin();
+        reading_->count = first_ + static_cast<std::uint32_t>(until);
+        count.read(*reading_, &rhythm);
+    }
+
+    dff::SweepTiming timing_;
+    Bus bus_;
+    std::mt19937_64 random_;
+    std::uint32_t first_;                      /* what the sequencer had counted before us */
+    std::optional<dff::CountReading> reading_; /* under way */
+    bool asked_ = false;                       /* another one, after it */
+};
+
+/* The same sequence, with a count and, if there is a tally for it, without. */
+void run_counted(const Rig &rig, const Bus &bus, std::uint64_t seed, Tally &counted, Tally *uncounted)
+{
+    std::mt19937_64 random(seed);
+    CountedLine line(rig, bus, seed);
+    dff::TriggerLabeller labeller(rig.timing, dff::FrameNumbers(rig.numbering), line.rhythm, &line.count);
+    run(rig, labeller, line, true, random, counted);
+    std::mt19937_64 again(seed);
+    if (uncounted)
+        run_synced(rig, true, again, *uncounted);
+}
+
+Bus random_bus(const Rig &rig, double longest_periods, std::mt19937_64 &random)
+{
+    const auto up_to = [&](double periods) {
+        return static_cast<std::int64_t>(static_cast<double>(rig.timing.period_ns) *
+                                         between(0, periods, random));
+    };
+    return {up_to(perhaps(random) ? 0.1 : 3), up_to(perhaps(random) ? 0.1 : longest_periods)};
+}
+
+void print(const char *what, const Tally &tally)
+{
+    std::printf("%s: %llu frames, %.1f %% labelled, %llu wrong\n", what,
+                static_cast<unsigned long long>(tally.frames),
+                100.0 * static_cast<double>(tally.labels) / static_cast<double>(tally.frames),
+                static_cast<unsigned long long>(tally.wrong));
 }
 
 } // namespace
@@ -174,9 +305,69 @@ TEST(PlaneLabels, no_fault_makes_one_wrong_with_a_sync_line)
         EXPECT_EQ(tally.wrong, before) << "seed " << seed;
     }
     EXPECT_GT(static_cast<double>(tally.labels), 0.3 * static_cast<double>(tally.frames));
-    std::printf("%llu frames, %.1f %% labelled, %llu wrong\n", static_cast<unsigned long long>(tally.frames),
-                100.0 * static_cast<double>(tally.labels) / static_cast<double>(tally.frames),
-                static_cast<unsigned long long>(tally.wrong));
+    print("sync line", tally);
+}
+
+/* Clocks that are set while the triggers rest, and edges at another plane, are what frames and edges cannot
+ * tell. */
+TEST(PlaneLabels, no_fault_makes_one_wrong_where_triggers_are_counted)
+{
+    const unsigned first = environment("DFF_SEED", 1000);
+    const unsigned sequences = environment("DFF_SEQUENCES", 3000);
+    Tally counted;
+    Tally uncounted;
+    for (unsigned seed = first; seed < first + sequences; seed++) {
+        std::mt19937_64 random(seed);
+        Rig rig = random_rig(random);
+        rig.faults = random_faults(random);
+        rig.has_clock = random() % 4 != 0;
+        /* A pause between the two would fool one reading. */
+        rig.faults.edges_off = perhaps(random) ? between(0, 0.1, random) : 0;
+        rig.faults.pause = rig.faults.edges_off == 0 ? between(0, 0.02, random) : 0;
+        if (rig.faults.ignored == 0)
+            rig.faults.clock_jump = between(0, 0.02, random);
+        const Bus bus = random_bus(rig, 0.5, random);
+        const std::uint64_t before = counted.wrong;
+        run_counted(rig, bus, seed, counted, &uncounted);
+        EXPECT_EQ(counted.wrong, before) << "seed " << seed;
+    }
+    print("counted", counted);
+    print("not counted", uncounted);
+    EXPECT_GT(static_cast<double>(counted.labels), 0.2 * static_cast<double>(counted.frames));
+    EXPECT_GT(uncounted.wrong, 0U) << "then the count tells nothing";
+}
+
+TEST(PlaneLabels, counts_that_cannot_be_read_take_no_label_away)
+{
+    for (unsigned seed = 0; seed < 100; seed++) {
+        std::mt19937_64 random(seed);
+        Rig rig = random_rig(random);
+        rig.faults = random_faults(random);
+        Bus bus = random_bus(rig, 3, random);
+        bus.fails = 1;
+        Tally counted;
+        Tally uncounted;
+        run_counted(rig, bus, seed, counted, &uncounted);
+        EXPECT_EQ(counted.labels, uncounted.labels) << "seed " << seed;
+    }
+}
+
+TEST(PlaneLabels, counts_that_are_read_now_and_then_cost_few_labels)
+{
+    Tally counted;
+    Tally uncounted;
+    for (unsigned seed = 0; seed < 300; seed++) {
+        std::mt19937_64 random(seed);
+        Rig rig = random_rig(random);
+        rig.faults = random_faults(random);
+        Bus bus = random_bus(rig, 3, random);
+        bus.fails = between(0, 1, random);
+        run_counted(rig, bus, seed, counted, &uncounted);
+    }
+    EXPECT_EQ(counted.wrong, 0U);
+    EXPECT_GT(static_cast<double>(counted.labels), 0.95 * static_cast<double>(uncounted.labels));
+    print("read now and then", counted);
+    print("not counted", uncounted);
 }
 
 TEST(PlaneLabels, no_fault_makes_one_wrong_by_counting)
@@ -190,8 +381,8 @@ TEST(PlaneLabels, no_fault_makes_one_wrong_by_counting)
         rig.faults = random_faults(random);
         dff::CountingLabeller labeller(rig.timing, dff::FrameNumbers(rig.numbering));
         const std::uint64_t before = tally.wrong;
-        run(
-            rig, labeller, [](std::int64_t) {}, true, random, tally);
+        Witnesses none;
+        run(rig, labeller, none, true, random, tally);
         EXPECT_EQ(tally.wrong, before) << "seed " << seed;
     }
     EXPECT_GT(tally.labels, 0U);

@@ -204,6 +204,17 @@ TEST(FpgaLens, transfer_that_keeps_failing_stops_the_sweep)
     EXPECT_EQ(bus.transfers, (std::vector<std::string>{"failed", "failed", "failed", "write 020000"}));
 }
 
+TEST(FpgaLens, count_that_cannot_be_read_leaves_the_sweep_alone)
+{
+    RecordingBus bus;
+    dff::FpgaLens lens(bus);
+    lens.start(false);
+    bus.transfers.clear();
+    bus.failures = 3;
+    EXPECT_THROW(lens.frame_count(), dff::I2cError);
+    EXPECT_EQ(bus.transfers, (std::vector<std::string>{"failed", "failed", "failed"}));
+}
+
 TEST(FpgaLens, dead_bus_ends_in_an_error_after_few_tries)
 {
     RecordingBus bus;
