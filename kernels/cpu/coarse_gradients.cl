@@ -4,11 +4,13 @@
  * For focus_tiles.cl: Sobel's filter, and the pictures of lower resolution under a tile, whose gradients are spread to
  * the fine columns. Units and layout stand there.
  */
+/* max(m, m - m/8 + n/2). */
 inline ushort32 magnitude(short32 dx, short32 dy)
 {
     const short32 x = higher(dx, -dx), y = higher(dy, -dy);
-    const short32 m = higher(x, y), n = lower(x, y);
-    return as_ushort32(higher(m, m - (m >> (short)3) + (n >> (short)1)));
+    const ushort32 m = as_ushort32(higher(x, y)), n = as_ushort32(lower(x, y));
+    const ushort32 half_n = n >> (ushort)1, eighth_m = m >> (ushort)3;
+    return m + ((half_n > eighth_m ? half_n : eighth_m) - eighth_m);
 }
 
 /* What Sobel's filter keeps of the two rows above, for 32 columns. */
@@ -101,80 +103,70 @@ inline void downsample(const uchar *luma, Tile tile, ushort *sums, int level)
 /* Keeps UNITS times the coarse gradient within 16 bits. */
 #define GRADIENT_SHIFT(level) ((level) == 4 ? 5 : 1)
 
-/* Even or odd columns of a block, out of a, b, c whose samples stand at columns % 3 = 0, 1, 2 from `phase` columns
- * before the block on: a and b are put in place first. */
-#define FROM_A_B(column, i) ((column) % 3 * 32 % 64 + (column) / 3)
-#define FROM_AB_C(column, i) ((column) % 3 == 2 ? 32 + (column) / 3 : (i))
-#define EVEN_A_B(i) FROM_A_B(PHASE + 2 * (i), i)
-#define EVEN_AB_C(i) FROM_AB_C(PHASE + 2 * (i), i)
-#define ODD_A_B(i) FROM_A_B(PHASE + 2 * (i) + 1, i)
-#define ODD_AB_C(i) FROM_AB_C(PHASE + 2 * (i) + 1, i)
-#define MERGE_EVEN(a, b, c) \
-    __builtin_shufflevector(__builtin_shufflevector(a, b, LANES(EVEN_A_B)), c, LANES(EVEN_AB_C))
-#define MERGE_ODD(a, b, c) __builtin_shufflevector(__builtin_shufflevector(a, b, LANES(ODD_A_B)), c, LANES(ODD_AB_C))
-
 typedef struct {
     ushort32 even, odd; /* columns */
 } Columns;
 
-inline Columns merge_triples(ushort32 a, ushort32 b, ushort32 c, int phase)
+/* Of the samples from one before a block's first on, the nearest to a column and the one that weighs 1 beside its 2; the
+ * block begins `phase` columns after its first sample does. */
+#define NEAR(column) (1 + (column) / 3)
+#define FAR_OR_NEAR(column) ((column) / 3 + (column) % 3)
+#define EVEN_NEAR(i) NEAR(PHASE + 2 * (i))
+#define EVEN_FAR(i) FAR_OR_NEAR(PHASE + 2 * (i))
+#define ODD_NEAR(i) NEAR(PHASE + 2 * (i) + 1)
+#define ODD_FAR(i) FAR_OR_NEAR(PHASE + 2 * (i) + 1)
+#define SPREAD_BY(v, near, far) \
+    __builtin_shufflevector(v, v, LANES(near)) * (ushort)2 + __builtin_shufflevector(v, v, LANES(far))
+
+inline Columns spread_triples(ushort32 v, int phase)
 {
     switch (phase) {
 #define PHASE 0
     case PHASE:
-        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+        return (Columns){SPREAD_BY(v, EVEN_NEAR, EVEN_FAR), SPREAD_BY(v, ODD_NEAR, ODD_FAR)};
 #undef PHASE
 #define PHASE 1
     case PHASE:
-        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+        return (Columns){SPREAD_BY(v, EVEN_NEAR, EVEN_FAR), SPREAD_BY(v, ODD_NEAR, ODD_FAR)};
 #undef PHASE
 #define PHASE 2
     default:
-        return (Columns){MERGE_EVEN(a, b, c), MERGE_ODD(a, b, c)};
+        return (Columns){SPREAD_BY(v, EVEN_NEAR, EVEN_FAR), SPREAD_BY(v, ODD_NEAR, ODD_FAR)};
 #undef PHASE
     }
 }
 
-/* One row of coarse gradients spread to the fine columns, in 1/UNITS. */
-inline void spread_row(const ushort *gradient, float *fine, int columns, int level)
+/* A row of coarse gradients spread to the fine columns of a block, in 1/UNITS. */
+inline void spread_row(const ushort *first, float16 *out, int block, int level)
 {
-    for (int block = 0; block * BLOCK < columns; block++) {
-        const ushort *first = gradient + block * BLOCK / level;
-        const ushort32 before = *(const lanes32 *)first, here = *(const lanes32 *)(first + 1);
-        const ushort32 after = *(const lanes32 *)(first + 2);
-        float16 *out = (float16 *)(fine + block * SPREAD_ROWS * BLOCK);
-        Columns spread;
-        if (level == 2)
-            spread = (Columns){here * (ushort)3 + before, here * (ushort)3 + after};
-        else
-            spread = merge_triples(here * (ushort)2 + before, here * (ushort)3, here * (ushort)2 + after, block % 3);
-        out[0] = even_lanes(spread.even);
-        out[1] = even_lanes(spread.odd);
-        out[2] = odd_lanes(spread.even);
-        out[3] = odd_lanes(spread.odd);
+    Columns spread;
+    if (level == 2) {
+        const ushort32 here = *(const lanes32 *)(first + 1) * (ushort)3;
+        spread = (Columns){here + *(const lanes32 *)first, here + *(const lanes32 *)(first + 2)};
+    } else {
+        spread = spread_triples(*(const lanes32 *)first, block % 3);
     }
+    out[0] = even_lanes(spread.even);
+    out[1] = even_lanes(spread.odd);
+    out[2] = odd_lanes(spread.even);
+    out[3] = odd_lanes(spread.odd);
 }
 
 /* The same at level 4, where the columns of a vector share their phase. */
-inline void spread_row_of_quarters(const ushort *gradient, float *fine, int columns)
+inline void spread_row_of_quarters(const ushort *first, float16 *out)
 {
-    for (int block = 0; block * BLOCK < columns; block++) {
-        const ushort *first = gradient + block * BLOCK / 4;
-        const float16 before = convert_float16(*(const lanes16 *)first);
-        const float16 here = convert_float16(*(const lanes16 *)(first + 1));
-        const float16 after = convert_float16(*(const lanes16 *)(first + 2));
-        float16 *out = (float16 *)(fine + block * SPREAD_ROWS * BLOCK);
-        out[0] = here * 5.0f + before * 3.0f;
-        out[1] = here * 7.0f + before;
-        out[2] = here * 7.0f + after;
-        out[3] = here * 5.0f + after * 3.0f;
-    }
+    const float16 before = convert_float16(*(const lanes16 *)first);
+    const float16 here = convert_float16(*(const lanes16 *)(first + 1));
+    const float16 after = convert_float16(*(const lanes16 *)(first + 2));
+    out[0] = here * 5.0f + before * 3.0f;
+    out[1] = here * 7.0f + before;
+    out[2] = here * 7.0f + after;
+    out[3] = here * 5.0f + after * 3.0f;
 }
 
-/* Gradients of a coarse picture, from one row before the tile to one behind, each spread to the fine columns. */
-inline void coarse_gradient(const ushort *sums, Tile tile, float *spread, int level)
+/* Gradients of a coarse picture, from one sample before the tile to one behind. */
+inline void coarse_gradient(const ushort *sums, Tile tile, ushort *gradient, int level)
 {
-    SCRATCH ushort gradient[COARSE_ROWS * COARSE_STRIDE];
     const int columns = (tile.columns + level - 1) / level + 2, rows = tile.whole_rows / level + 2;
     for (int c = 0; c < columns; c += 32) {
         Above above = {0, 0, {0, 0}};
@@ -187,9 +179,15 @@ inline void coarse_gradient(const ushort *sums, Tile tile, float *spread, int le
                 *(ushort32 *)(gradient + r * COARSE_STRIDE + c) = g >> (ushort)GRADIENT_SHIFT(level);
         }
     }
-    for (int r = 0; r < rows; r++)
+}
+
+/* Those of a block, each row spread to the fine columns. */
+inline void spread_block(const ushort *gradient, int rows, int block, float *spread, int level)
+{
+    const ushort *first = gradient + block * BLOCK / level;
+    for (int r = 0; r < rows / level + 2; r++)
         if (level == 4)
-            spread_row_of_quarters(gradient + r * COARSE_STRIDE, spread + r * BLOCK, tile.columns);
+            spread_row_of_quarters(first + r * COARSE_STRIDE, (float16 *)(spread + r * BLOCK));
         else
-            spread_row(gradient + r * COARSE_STRIDE, spread + r * BLOCK, tile.columns, level);
+            spread_row(first + r * COARSE_STRIDE, (float16 *)(spread + r * BLOCK), block, level);
 }

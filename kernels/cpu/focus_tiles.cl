@@ -7,8 +7,9 @@
  *
  * Columns are taken 64 at a time, even ones in one vector of 16-bit integers and odd ones in another; their halves, as
  * floats, hold every fourth column. That is how wide loads part bytes, pairs add up and coarse samples spread without a
- * shuffle. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so that walking down
- * a block is walking through memory.
+ * shuffle. Such a block is measured from its first row to its last, for which its coarse gradients are spread to floats
+ * that the first cache holds. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so
+ * that walking down a block is walking through memory.
  *
  * What differs from the formula:
  *  - the gradient's magnitude is max(m, 7/8 m + n/2) with m >= n the absolute derivatives: 3 % low to 0.8 % high;
@@ -68,33 +69,37 @@ inline void take(float16 product, int z, int *best, float *sum)
     *(float16 *)sum += product;
 }
 
-/* Takes plane z of a tile into the best product and the sum over the planes. */
-inline void measure_plane(const uchar *luma, Tile tile, const float *spread, int z, Ahead ahead, int *best, float *sum)
+inline void clear_block(int *best, float *sum)
 {
-    for (int block = 0; block * BLOCK < tile.columns; block++) {
-        __global const uchar *next = ahead.row + block * BLOCK;
-        Above even = {0, 0, {0, 0}}, odd = even;
-        const uchar *row = luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK;
-        next_gradients(row, &even, &odd);
-        next_gradients(row + STRIDE, &even, &odd);
-        row += 2 * STRIDE;
-        const float *block_spread = spread + block * SPREAD_ROWS * BLOCK;
-        int pixel = block * TILE_HEIGHT * BLOCK;
-        for (int y = 0; y < tile.whole_rows; y += ROUND) {
+    for (int i = 0; i < BLOCK_PIXELS; i += 16) {
+        *(int16 *)(best + i) = 0;
+        *(float16 *)(sum + i) = 0.0f;
+    }
+}
+
+/* Takes 64 columns of a tile in plane z into the best product and the sum over the planes. */
+inline void measure_block(const uchar *row, int rows, const float *spread, int z, Ahead ahead, int *best, float *sum)
+{
+    Above even = {0, 0, {0, 0}}, odd = even;
+    next_gradients(row, &even, &odd);
+    next_gradients(row + STRIDE, &even, &odd);
+    row += 2 * STRIDE;
+    for (int y = 0; y < rows; y += ROUND) {
+        __attribute__((opencl_unroll_hint))
+        for (int phase = 0; phase < ROUND; phase++) {
+            PREFETCH(ahead.row);
+            if (y + phase < 2 * MARGIN_Y)
+                PREFETCH(ahead.row - ahead.stride * (2 * MARGIN_Y));
+            ahead.row += ahead.stride;
+            const Columns fine = next_gradients(row, &even, &odd);
+            const float16 columns[4] = {even_lanes(fine.even), even_lanes(fine.odd), odd_lanes(fine.even),
+                                        odd_lanes(fine.odd)};
             __attribute__((opencl_unroll_hint))
-            for (int phase = 0; phase < ROUND; phase++) {
-                PREFETCH(next);
-                if (y + phase < 2 * MARGIN_Y)
-                    PREFETCH(next - ahead.stride * (2 * MARGIN_Y));
-                next += ahead.stride;
-                const Columns fine = next_gradients(row, &even, &odd);
-                const float16 columns[4] = {even_lanes(fine.even), even_lanes(fine.odd), odd_lanes(fine.even),
-                                            odd_lanes(fine.odd)};
-                __attribute__((opencl_unroll_hint))
-                for (int i = 0; i < 4; i++, pixel += 16)
-                    take(product_of_levels(columns[i], block_spread + 16 * i, y, phase), z, best + pixel, sum + pixel);
-                row += STRIDE;
-            }
+            for (int i = 0; i < 4; i++)
+                take(product_of_levels(columns[i], spread + 16 * i, y, phase), z, best + 16 * i, sum + 16 * i);
+            row += STRIDE;
+            best += BLOCK;
+            sum += BLOCK;
         }
     }
 }
@@ -170,9 +175,10 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
 {
     SCRATCH uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
     SCRATCH ushort sums[COARSE_ROWS * COARSE_STRIDE + 64];
+    SCRATCH ushort gradients[(LEVELS > 1 ? LEVELS - 1 : 1) * GRADIENT_LEVEL];
     SCRATCH float spread[(LEVELS > 1 ? LEVELS - 1 : 1) * SPREAD_LEVEL];
-    SCRATCH int best[TILE_PIXELS];
-    SCRATCH float sum[TILE_PIXELS];
+    SCRATCH int best[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
+    SCRATCH float sum[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
 
     Tile tile;
     tile.x = (int)get_group_id(0) * TILE_WIDTH;
@@ -181,18 +187,26 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     tile.rows = min(TILE_HEIGHT, height - tile.y);
     tile.whole_rows = (tile.rows + ROUND - 1) / ROUND * ROUND;
 
-    for (int i = 0; i < TILE_PIXELS; i += 16) {
-        *(int16 *)(best + i) = 0;
-        *(float16 *)(sum + i) = 0.0f;
-    }
     for (int z = 0; z < planes; z++) {
         load_tile(stack + table[z].x, table[z].y, tile, width, height, luma);
         __attribute__((opencl_unroll_hint))
         for (int level = 2; level <= LEVELS; level++) {
             downsample(luma, tile, sums, level);
-            coarse_gradient(sums, tile, spread + (level - 2) * SPREAD_LEVEL, level);
+            coarse_gradient(sums, tile, gradients + (level - 2) * GRADIENT_LEVEL, level);
         }
-        measure_plane(luma, tile, spread, z, tile_ahead(stack, table, tile, z, planes, width), best, sum);
+        Ahead ahead = tile_ahead(stack, table, tile, z, planes, width);
+        for (int block = 0; block * BLOCK < tile.columns; block++, ahead.row += BLOCK) {
+            __attribute__((opencl_unroll_hint))
+            for (int level = 2; level <= LEVELS; level++)
+                spread_block(gradients + (level - 2) * GRADIENT_LEVEL, tile.whole_rows, block,
+                             spread + (level - 2) * SPREAD_LEVEL, level);
+            int *block_best = best + block * BLOCK_PIXELS;
+            float *block_sum = sum + block * BLOCK_PIXELS;
+            if (z == 0)
+                clear_block(block_best, block_sum);
+            measure_block(luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK, tile.whole_rows, spread, z, ahead,
+                          block_best, block_sum);
+        }
     }
     tile_statistics(stack, table, tile, mean_luma, moved, width, planes, threshold_bits);
 
@@ -203,7 +217,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     float16 total = 0.0f;
     for (int y = 0; y < tile.rows; y++)
         for (int x = 0; x < tile.columns; x += BLOCK) {
-            const int from = (x / BLOCK * TILE_HEIGHT + y) * BLOCK;
+            const int from = x / BLOCK * BLOCK_PIXELS + y * BLOCK;
             const ulong entry = (ulong)(tile.y + y) * stride + tile.x + x;
             const ulong pixel = (ulong)(tile.y + y) * width + tile.x + x;
             total += store_pixels(best + from, sum + from, tile.columns - x, unit, planes, tolerance, peak + entry,

@@ -13,9 +13,10 @@
 #define STRIDE (ORIGIN + TILE_WIDTH + 2 * BLOCK)
 #define COARSE_STRIDE (TILE_WIDTH / 2 + 32)
 #define COARSE_ROWS (TILE_HEIGHT / 2 + 4)
-#define TILE_PIXELS (TILE_WIDTH * TILE_HEIGHT)
+#define BLOCK_PIXELS (BLOCK * TILE_HEIGHT)
+#define GRADIENT_LEVEL (COARSE_ROWS * COARSE_STRIDE) /* samples */
 #define SPREAD_ROWS (TILE_HEIGHT / 2 + 2)
-#define SPREAD_LEVEL (TILE_WIDTH * SPREAD_ROWS) /* samples */
+#define SPREAD_LEVEL (BLOCK * SPREAD_ROWS)
 
 /* For vectors to be read and written at their own alignment: a load across two cache lines costs as much as two. */
 #define SCRATCH __attribute__((aligned(64)))
