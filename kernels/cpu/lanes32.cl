@@ -4,6 +4,12 @@
  * 32 lanes of 16 bits: one register of AVX-512, two of AVX2. Vectors of 32 are clang's, on which the drivers of CPUs
  * are built; OpenCL's own end at 16.
  */
+
+/* Compilers for CPUs need to be told; what they leave as a call they split to half the lanes. */
+#ifndef INLINE /* a simulator may know better */
+#define INLINE inline __attribute__((always_inline))
+#endif
+
 typedef uchar uchar32 __attribute__((ext_vector_type(32)));
 typedef short short32 __attribute__((ext_vector_type(32)));
 typedef ushort ushort32 __attribute__((ext_vector_type(32)));

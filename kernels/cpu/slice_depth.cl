@@ -2,51 +2,73 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * For CPUs, tile by tile: the slice of bilateral_grid.cl, the Gaussian of gaussian_blur.cl and the coding of
- * depth_code.cl. RADIUS taps on each side of the Gaussian's centre, and what luma_grid.cl says of the grid, are built
- * in.
+ * depth_code.cl, 32 pixels at once. What differs: positions are cut to the planes before the Gaussian and are 16-bit
+ * numbers from there on, 0..65534 as depth_code.cl counts them, which may turn out (RADIUS + 1) / 2 too high or too low
+ * along y and as much along x.
+ *
+ * RADIUS taps on each side of the Gaussian's centre, and what luma_grid.cl says of the grid, are built in.
  */
 #include "lanes32.cl"
 
-#define TILE_WIDTH 256 /* multiple of 16 */
+#define TILE_WIDTH 960 /* multiple of 32 */
 #define TILE_HEIGHT 64
-#define AHEAD 4    /* rows of luma asked for ahead */
-#define TOGETHER 8 /* rows blurred at once, a divisor of TILE_HEIGHT */
+#define AHEAD 4 /* rows of luma asked for ahead */
+#define LAST 65534
 #if RADIUS <= 24
 #define UNROLL_SMALL __attribute__((opencl_unroll_hint))
 #else
 #define UNROLL_SMALL
 #endif
-#define ORIGIN ((RADIUS + 15) / 16 * 16) /* where a row of the tile begins in a row of scratch: whole lanes */
-#define STRIDE (ORIGIN + TILE_WIDTH + ORIGIN + 16)
+#define MARGIN ((RADIUS + 31) / 32 * 32) /* beside the tile: whole lanes */
+#define STRIDE (MARGIN + TILE_WIDTH + MARGIN)
+#define TILE_COLUMNS ((TILE_WIDTH + 2 * RADIUS) / SIGMA_XY + 2) /* of the grid */
 
-inline float16 symmetric_tap(const float *centre, int distance)
+typedef uint __attribute__((ext_vector_type(32))) wide32;
+
+inline wide32 as_wide(ushort32 v)
 {
-    return *(const flanes *)(centre - distance) + *(const flanes *)(centre + distance);
+    return __builtin_convertvector(v, wide32);
 }
 
-/* The Gaussian along y for 16 columns of TOGETHER rows, the first of which stands RADIUS rows below `u`: each row of u
- * is read once. */
-inline void blur_columns(const float *u, __constant float *taps, float *blurred)
+/* (a + b) / 2, halves rounded up: compilers know it as one instruction. */
+INLINE ushort32 mean_of(ushort32 a, ushort32 b)
 {
-    float16 sums[TOGETHER];
-    __attribute__((opencl_unroll_hint))
-    for (int k = 0; k < TOGETHER; k++)
-        sums[k] = 0.0f;
+    return __builtin_convertvector((as_wide(a) + as_wide(b) + 1u) >> 1u, ushort32);
+}
+
+/* a b / 65536, rounded down: this they do not see in a loop with the same b. */
+INLINE ushort32 part_of(ushort32 a, ushort32 b)
+{
+#if defined __AVX512BW__
+    return as_ushort32(__builtin_ia32_pmulhuw512(as_short32(a), as_short32(b)));
+#elif defined __AVX2__
+    const short16 low = __builtin_ia32_pmulhuw256(as_short16(first_half(a)), as_short16(first_half(b)));
+    const short16 high = __builtin_ia32_pmulhuw256(as_short16(second_half(a)), as_short16(second_half(b)));
+    return as_ushort32((short32)(low, high));
+#else
+    return __builtin_convertvector((as_wide(a) * as_wide(b)) >> 16u, ushort32);
+#endif
+}
+
+/* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. */
+INLINE ushort32 blur(const ushort *centre, int step, const ushort32 *taps)
+{
+    ushort32 sum = part_of(*(const lanes32 *)centre, taps[0]) + (ushort)((RADIUS + 1) / 2);
     UNROLL_SMALL
-    for (int i = 0; i <= 2 * RADIUS + TOGETHER - 1; i++) {
-        const float16 here = *(const float16 *)(u + i * STRIDE);
-        __attribute__((opencl_unroll_hint))
-        for (int k = 0; k < TOGETHER; k++)
-            if (i >= k && i <= k + 2 * RADIUS)
-                sums[k] += taps[abs(i - k - RADIUS)] * here;
-    }
-    __attribute__((opencl_unroll_hint))
-    for (int k = 0; k < TOGETHER; k++)
-        *(float16 *)(blurred + k * STRIDE) = sums[k];
+    for (int i = 1; i <= RADIUS; i++)
+        sum += part_of(mean_of(*(const lanes32 *)(centre - i * step), *(const lanes32 *)(centre + i * step)), taps[i]);
+    return sum;
+}
+
+/* Codes of `count` cells of the grid, to be rounded down. */
+INLINE void code_cells(__global const float *cells, float scale, int count, float *codes)
+{
+    for (int i = 0; i < count; i += 16)
+        *(flanes *)(codes + i) = clamp(*(__global const flanes *)(cells + i) * scale, 0.0f, (float)LAST) + 0.5f;
 }
 
 /* Values of a table of 16 at `index`: the compiler's pattern for one permutation where the processor has it. */
-inline float16 look_up(float16 table, int16 index)
+INLINE float16 look_up(float16 table, int16 index)
 {
     float16 found;
     __attribute__((opencl_unroll_hint))
@@ -55,81 +77,82 @@ inline float16 look_up(float16 table, int16 index)
     return found;
 }
 
-/* Positions of 16 pixels in one column of the grid, a cell for each step of luma. */
-inline float16 slice_16(__global const float *column, uchar16 luma)
+/* Codes of 16 pixels in one column of the grid, a cell for each step of luma. */
+INLINE ushort16 slice_16(const float *column, uchar16 luma)
 {
     const int16 step = convert_int16(luma) / SIGMA_LUMA;
 #if COLUMN <= 17
-    return look_up(*(__global const flanes *)column, step);
+    return convert_ushort16(look_up(*(const flanes *)column, step));
 #else
-    float lanes[16];
+    ushort lanes[16];
     for (int i = 0; i < 16; i++)
-        lanes[i] = column[step[i]];
-    return *(const flanes *)lanes;
+        lanes[i] = (ushort)column[step[i]];
+    return *(const lanes16 *)lanes;
 #endif
 }
 
-/* Slices the columns from..to of a row. */
-inline void slice_row(__global const float *cells, __global const uchar *luma, int width, int from, int to, float *u)
+/* Slices the columns from..to of a row; codes: of the cells from the first one's column on. */
+INLINE void slice_row(const float *codes, __global const uchar *luma, int width, int from, int to, ushort *u)
 {
-    for (int x = from; x < to;) {
-        __global const float *column = cells + x / SIGMA_XY * COLUMN;
-        const int column_end = min((x / SIGMA_XY + 1) * SIGMA_XY, to);
-        for (; x < column_end; x += 16) { /* the last lanes may be other columns', which write theirs later */
-            const int first = min(x, width - 16); /* at the right border the lanes before x come along */
+    int column_end = from / SIGMA_XY * SIGMA_XY + SIGMA_XY;
+    for (int x = from; x < to; x = column_end, column_end += SIGMA_XY, codes += COLUMN)
+        for (const int end = min(column_end, to); x < end; x += 16) {
             PREFETCH(luma + AHEAD * width + x);
-            const float16 position = slice_16(column, *(__global const lanes8 *)(luma + first));
-            if (first == x)
-                *(flanes *)(u + x) = position;
-            else
-                for (int lane = x - first; lane < 16; lane++)
-                    u[first + lane] = position[lane];
+            if (x <= width - 16) { /* the last lanes may be other columns', which write theirs later */
+                *(lanes16 *)(u + x) = slice_16(codes, *(__global const lanes8 *)(luma + x));
+            } else { /* the lanes before x come along */
+                const ushort16 position = slice_16(codes, *(__global const lanes8 *)(luma + width - 16));
+                for (int lane = x - (width - 16); lane < 16; lane++)
+                    u[width - 16 + lane] = position[lane];
+            }
         }
-        x = column_end;
-    }
 }
 
-/* One work-item a tile: depth[height][stride]. taps: from the Gaussian's centre outwards. With `linear` a position's
- * code is its number among the 65535 of depth_code.cl, and `codes` is not read. */
-__kernel void slice_depth(__global const float *solution, __global const uchar *luma, __constant float *taps,
+/* One work-item a tile: depth[height][stride]. weights: the Gaussian's, in parts of 65536; the centre's, then both at
+ * a distance of 1, 2... With `linear` a position's code is its number among the 65535 of depth_code.cl, and `codes` is
+ * not read. */
+__kernel void slice_depth(__global const float *solution, __global const uchar *luma, __constant ushort *weights,
                           __global const ushort *codes, __global ushort *depth, int width, int height, int stride,
                           int planes, int linear)
 {
-    float u[(TILE_HEIGHT + 2 * RADIUS + 1) * STRIDE] __attribute__((aligned(64)));
-    float rows[TOGETHER * STRIDE] __attribute__((aligned(64)));
+    ushort u[(TILE_HEIGHT + 2 * RADIUS) * STRIDE] __attribute__((aligned(64)));
+    ushort row[STRIDE] __attribute__((aligned(64)));
+    float cells[TILE_COLUMNS * COLUMN + 16];
     const int left = (int)get_group_id(0) * TILE_WIDTH, right = min(left + TILE_WIDTH, width);
     const int top = (int)get_group_id(1) * TILE_HEIGHT, bottom = min(top + TILE_HEIGHT, height);
+    const int is_known = !isnan(solution[ROW + COLUMN + 1]);
 
     const int from = max(left - RADIUS, 0), to = min(right + RADIUS, width);
+    const int column = from / SIGMA_XY, columns = (to - 1) / SIGMA_XY + 1 - column;
+    int grid_row = -1;
     for (int y = top - RADIUS; y < bottom + RADIUS; y++) {
         const int inside = mirror(y, height);
-        float *row = u + (y - top + RADIUS) * STRIDE + ORIGIN - left;
-        slice_row(solution + (inside / SIGMA_XY + 1) * ROW + COLUMN + 1, luma + (ulong)inside * width, width, from, to,
-                  row);
+        if (inside / SIGMA_XY != grid_row) {
+            grid_row = inside / SIGMA_XY;
+            code_cells(solution + (grid_row + 1) * ROW + (column + 1) * COLUMN + 1, (float)LAST / (planes - 1),
+                       columns * COLUMN, cells);
+        }
+        ushort *line = u + (y - top + RADIUS) * STRIDE + MARGIN - left;
+        slice_row(cells, luma + (ulong)inside * width, width, from, to, line);
         for (int x = left - RADIUS; x < from; x++)
-            row[x] = row[min(-x, to - 1)];
+            line[x] = line[min(-x, to - 1)];
         for (int x = to; x < right + RADIUS; x++)
-            row[x] = row[max(2 * width - 2 - x, from)];
+            line[x] = line[max(2 * width - 2 - x, from)];
     }
 
-    const float top_code = 65534.0f / (planes - 1);
+    ushort32 taps[RADIUS + 1];
+    UNROLL_SMALL
+    for (int i = 0; i <= RADIUS; i++)
+        taps[i] = weights[i];
     for (int y = top; y < bottom; y++) {
-        if ((y - top) % TOGETHER == 0)
-            for (int x = 0; x < ORIGIN + right - left + RADIUS; x += 16)
-                blur_columns(u + (y - top) * STRIDE + x, taps, rows + x);
-        const float *row = rows + (y - top) % TOGETHER * STRIDE;
-        for (int x = 0; x < right - left; x += 16) {
-            const float *centre = row + ORIGIN + x;
-            float16 sum = taps[0] * *(const flanes *)centre;
-            UNROLL_SMALL
-            for (int i = 1; i <= RADIUS; i++)
-                sum += taps[i] * symmetric_tap(centre, i);
-            const float16 code = clamp(sum * top_code, 0.0f, 65534.0f) + 1.5f;
-            const ushort16 coded = convert_ushort16(isnan(sum) ? (float16)0.0f : code);
+        for (int x = 0; x < MARGIN + right - left + RADIUS; x += 32)
+            *(lanes32 *)(row + x) = blur(u + (y - top + RADIUS) * STRIDE + x, STRIDE, taps);
+        for (int x = 0; x < right - left; x += 32) {
+            const ushort32 coded = is_known ? min32(blur(row + MARGIN + x, 1, taps), LAST) + (ushort)1 : (ushort32)0;
             __global ushort *out = depth + (ulong)y * stride + left + x;
-            const int inside = min(right - left - x, 16);
-            if (linear && inside == 16)
-                *(__global lanes16 *)out = coded;
+            const int inside = min(right - left - x, 32);
+            if (linear && inside == 32)
+                *(__global lanes32 *)out = coded;
             else
                 for (int i = 0; i < inside; i++)
                     out[i] = linear ? coded[i] : codes[coded[i]];

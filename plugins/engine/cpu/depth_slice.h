@@ -19,7 +19,7 @@ private:
     CommandQueue &queue_;
     StackShape shape_;
     cl::Kernel kernel_;
-    cl::Buffer taps_;
+    cl::Buffer weights_;
 };
 
 } // namespace dff

@@ -215,6 +215,28 @@ TEST(CpuKernels, the_first_start_agrees_with_its_twin)
         ASSERT_NEAR((found[i] - 1) / 65534.0f * 5.0f, expected.values[i], 0.05f) << i;
 }
 
+/* Also on the outermost planes, below and above which there are no codes. */
+TEST(CpuKernels, a_flat_scene_keeps_its_plane_to_16_bits)
+{
+    const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
+    const TestStack stack = smooth_stack(shape);
+    Stages stages(stack);
+    stages.focus.run(stages.luma, false, false);
+    LumaGrid grid(stages.queue, 150, 101, {16, 16, 0, 0.1f, 300});
+    DepthSlice slice(stages.queue, shape, grid);
+    const DepthCoder coder(stages.queue, shape);
+    const size_t pixels = 150 * 101;
+    const cl::Buffer planes = stages.queue.allocate(pixels);
+    const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
+    for (const uint8_t plane : {0, 2, 5}) {
+        stages.queue.commands().enqueueFillBuffer(planes, plane, 0, pixels);
+        grid.run(planes, stages.focus.mean());
+        slice.run(grid, stages.focus.mean(), coder, depth);
+        for (const uint16_t pixel : read_back<uint16_t>(stages.queue, depth, pixels))
+            ASSERT_NEAR(pixel, 1 + 65534 * plane / 5, 10);
+    }
+}
+
 TEST(CpuKernels, a_grid_goes_on_from_the_last_solution_where_that_is_better)
 {
     const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
