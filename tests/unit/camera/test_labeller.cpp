@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "label_bench.h"
+
 #include "lenssweep/camera/counting_labeller.h"
 #include "lenssweep/camera/sent_triggers.h"
-#include "lenssweep/camera/sync_rhythm.h"
-#include "lenssweep/camera/trigger_labeller.h"
-#include "simulated_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -12,91 +11,6 @@ using dff::FrameNumbering;
 using dff::FrameNumbers;
 using dff::PlaneLabeller;
 using dff::Unlabelled;
-
-namespace {
-
-constexpr std::int64_t period = 6'400'000;
-
-Rig paper_rig()
-{
-    Rig rig;
-    rig.timing = {6, period, 6 * period, 6'000'000};
-    rig.transfer_ns = 1'000'000;
-    rig.clock_offset_ns = 77'000'000'000;
-    return rig;
-}
-
-/* The paper's rig with a sync line, and what its labeller makes of it. */
-struct Bench {
-    explicit Bench(unsigned sweeps, const Rig &parts = paper_rig())
-        : rig(parts), events(play(rig, 1'000'000'000, 0, sweeps, random))
-    {
-    }
-
-    /* Labels of the frames that have one. */
-    std::vector<dff::FrameLabel> run()
-    {
-        labeller.start(PlaneLabeller::Beginning::FromRest, 1'000'000'000);
-        std::vector<dff::FrameLabel> labels;
-        for (const RigEvent &event : events) {
-            if (event.kind == RigEvent::Edge) {
-                rhythm.edge(event.time_ns);
-                continue;
-            }
-            const auto verdict = labeller.label(event.frame);
-            if (!verdict.label)
-                continue;
-            EXPECT_EQ(verdict.label->plane, event.plane);
-            EXPECT_EQ(verdict.label->sweep, event.sweep);
-            labels.push_back(*verdict.label);
-        }
-        return labels;
-    }
-
-    /* Position of a frame among the events. */
-    std::size_t frame(std::uint64_t sweep, unsigned plane) const
-    {
-        for (std::size_t i = 0; i < events.size(); i++)
-            if (events[i].kind == RigEvent::Frame && events[i].sweep == sweep && events[i].plane == plane)
-                return i;
-        return events.size();
-    }
-
-    std::size_t edge(unsigned number) const
-    {
-        std::size_t i = 0;
-        for (; i < events.size(); i++)
-            if (events[i].kind == RigEvent::Edge && number-- == 0)
-                break;
-        return i;
-    }
-
-    void erase(std::size_t index) { events.erase(events.begin() + static_cast<std::ptrdiff_t>(index)); }
-
-    /* The triggers rest before a sweep; the frames after that come late. */
-    void pause_before(std::uint64_t sweep, std::int64_t pause_ns, std::int64_t late_ns)
-    {
-        for (std::size_t i = edge(static_cast<unsigned>(sweep)); i < events.size(); i++) {
-            RigEvent &event = events[i];
-            if (event.kind == RigEvent::Frame && event.sweep < sweep)
-                continue;
-            event.time_ns += pause_ns;
-            event.frame.camera_ns += pause_ns;
-            event.frame.arrival_ns += pause_ns + late_ns;
-        }
-        std::stable_sort(events.begin(), events.end(), [](const RigEvent &a, const RigEvent &b) {
-            return std::max(a.time_ns, a.frame.arrival_ns) < std::max(b.time_ns, b.frame.arrival_ns);
-        });
-    }
-
-    std::mt19937_64 random{1};
-    Rig rig;
-    std::vector<RigEvent> events;
-    dff::SyncRhythm rhythm{rig.timing};
-    dff::TriggerLabeller labeller{rig.timing, FrameNumbers(FrameNumbering::GigE16), rhythm};
-};
-
-} // namespace
 
 TEST(FrameNumbers, sixteen_bits_wrap_to_one)
 {
@@ -209,6 +123,52 @@ TEST(SyncLine, frames_that_come_faster_than_the_first_ones_keep_their_labels)
             event.frame.arrival_ns += period * 6 / 10;
     EXPECT_EQ(bench.run().size(), 9U * 6U);
     EXPECT_FALSE(bench.labeller.lost());
+}
+
+/* Who could not know better took a late frame for one of a later trigger; it ends when frames are late no
+ * more.
+ */
+TEST(SyncLine, a_clock_that_jumped_by_what_frames_lag_is_found_when_the_lag_ends)
+{
+    Bench bench(10);
+    for (RigEvent &event : bench.events) {
+        if (event.kind != RigEvent::Frame || event.sweep < 4)
+            continue;
+        event.frame.camera_ns += period;
+        event.frame.arrival_ns += event.sweep < 6 ? period : 0;
+    }
+    bench.labels_may_be_wrong_until = 6;
+    EXPECT_LT(bench.run().size(), 5U * 6U);
+    EXPECT_TRUE(bench.labeller.lost());
+}
+
+/* Over a slow link a frame that is a little late could be that of the next trigger, and early. */
+TEST(SyncLine, a_clock_that_was_set_is_not_believed_by_late_frames)
+{
+    Rig rig = paper_rig();
+    rig.transfer_ns = period * 85 / 100;
+    Bench bench(10, rig);
+    for (RigEvent &event : bench.events) {
+        if (event.kind != RigEvent::Frame || event.sweep < 4)
+            continue;
+        event.frame.camera_ns += period;
+        event.frame.arrival_ns += period * 3 / 10;
+    }
+    EXPECT_EQ(bench.run().size(), 3U * 6U);
+    EXPECT_TRUE(bench.labeller.lost());
+}
+
+TEST(SyncLine, nor_is_one_that_was_set_while_the_triggers_rested)
+{
+    Rig rig = paper_rig();
+    rig.transfer_ns = period * 85 / 100;
+    Bench bench(20, rig);
+    bench.pause_before(8, 1'003'000'000, period * 3 / 10);
+    for (RigEvent &event : bench.events)
+        if (event.kind == RigEvent::Frame && event.sweep >= 8)
+            event.frame.camera_ns += period;
+    EXPECT_EQ(bench.run().size(), 7U * 6U);
+    EXPECT_TRUE(bench.labeller.lost());
 }
 
 TEST(SyncLine, a_slow_link_does_not_look_like_a_missed_trigger)
