@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * For focus_tiles.cl: Sobel's filter, and the pictures of lower resolution under a tile, whose gradients are spread to
- * the fine columns. Units and layout stand there.
+ * the fine pixels. Units and layout stand there.
  */
 /* max(m, m - m/8 + n/2). */
 inline ushort32 magnitude(short32 dx, short32 dy)
@@ -181,13 +181,42 @@ inline void coarse_gradient(const ushort *sums, Tile tile, ushort *gradient, int
     }
 }
 
-/* Those of a block, each row spread to the fine columns. */
-inline void spread_block(const ushort *gradient, int rows, int block, float *spread, int level)
+/* The two coarse rows that a fine row lies between, spread to the columns of a block, and the samples of the next one. */
+typedef struct {
+    float16 above[4], below[4];
+    const ushort *next;
+} Between;
+
+inline void next_coarse_row(Between *rows, int block, int level)
 {
-    const ushort *first = gradient + block * BLOCK / level;
-    for (int r = 0; r < rows / level + 2; r++)
-        if (level == 4)
-            spread_row_of_quarters(first + r * COARSE_STRIDE, (float16 *)(spread + r * BLOCK));
-        else
-            spread_row(first + r * COARSE_STRIDE, (float16 *)(spread + r * BLOCK), block, level);
+    __attribute__((opencl_unroll_hint))
+    for (int i = 0; i < 4; i++)
+        rows->above[i] = rows->below[i];
+    if (level == 4)
+        spread_row_of_quarters(rows->next, rows->below);
+    else
+        spread_row(rows->next, rows->below, block, level);
+    rows->next += COARSE_STRIDE;
+}
+
+/* The coarse rows that a block's first row lies between. */
+inline Between first_coarse_rows(const ushort *gradient, int block, int level)
+{
+    Between rows;
+    rows.next = gradient + block * BLOCK / level;
+    next_coarse_row(&rows, block, level);
+    next_coarse_row(&rows, block, level);
+    return rows;
+}
+
+/* The fine row, counted from a coarse row's first, from which on the coarse rows below lie nearer to the next one. */
+#define LOWER_HALF(level) (((level) + 1) / 2)
+
+/* Column i % 4 = i of the spread gradient in the fine row `phase` of a coarse row. */
+inline float16 upsample(const Between *rows, int i, int phase, int level)
+{
+    const float far = FAR(level, phase), near = UNITS(level) - far;
+    const bool lower = phase >= LOWER_HALF(level);
+    const float16 here = lower ? rows->above[i] : rows->below[i], there = lower ? rows->below[i] : rows->above[i];
+    return far == 0.0f ? here * near : here * near + there * far;
 }

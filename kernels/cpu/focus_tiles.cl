@@ -7,8 +7,7 @@
  *
  * Columns are taken 64 at a time, even ones in one vector of 16-bit integers and odd ones in another; their halves, as
  * floats, hold every fourth column. That is how wide loads part bytes, pairs add up and coarse samples spread without a
- * shuffle. Such a block is measured from its first row to its last, for which its coarse gradients are spread to floats
- * that the first cache holds. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so
+ * shuffle. Such a block is measured from its first row to its last, between coarse gradients in registers. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so
  * that walking down a block is walking through memory.
  *
  * What differs from the formula:
@@ -23,15 +22,6 @@
 #include "tile.cl"
 #include "coarse_gradients.cl"
 #include "stack_statistics.cl"
-
-/* The spread gradient in a fine row, `phase` rows below the one that the coarse row after `spread` begins with. */
-inline float16 upsample(const float *spread, int phase, int level)
-{
-    const int k = phase / level, far_row = 2 * (phase % level) + 1 < level ? k : k + 2;
-    const float far = FAR(level, phase % level), near = UNITS(level) - far;
-    const float16 here = *(const float16 *)(spread + (k + 1) * BLOCK);
-    return far == 0.0f ? here * near : here * near + *(const float16 *)(spread + far_row * BLOCK) * far;
-}
 
 /* What one unit of the integer product is worth in P. */
 #define FINE_UNIT (1.0f / 8)
@@ -49,12 +39,12 @@ inline Columns next_gradients(const uchar *row, Above *even, Above *odd)
 }
 
 /* The product over the levels for 16 pixels in row `phase` of a round. */
-inline float16 product_of_levels(float16 gradient, const float *spread, int y, int phase)
+inline float16 product_of_levels(float16 gradient, const Between *coarse, int i, int phase)
 {
     float16 product = gradient;
     __attribute__((opencl_unroll_hint))
     for (int level = 2; level <= LEVELS; level++)
-        product *= upsample(spread + (level - 2) * SPREAD_LEVEL + y / level * BLOCK, phase, level);
+        product *= upsample(coarse + level - 2, i, phase % level, level);
     return product;
 }
 
@@ -77,9 +67,15 @@ inline void clear_block(int *best, float *sum)
     }
 }
 
-/* Takes 64 columns of a tile in plane z into the best product and the sum over the planes. */
-inline void measure_block(const uchar *row, int rows, const float *spread, int z, Ahead ahead, int *best, float *sum)
+/* Takes 64 columns of a tile in plane z into the best product and the sum over the planes; `row` is the one above them,
+ * `gradients` those of the tile's coarse pictures. */
+inline void measure_block(const uchar *row, const ushort *gradients, int rows, int block, int z, Ahead ahead, int *best,
+                          float *sum)
 {
+    Between coarse[LEVELS];
+    __attribute__((opencl_unroll_hint))
+    for (int level = 2; level <= LEVELS; level++)
+        coarse[level - 2] = first_coarse_rows(gradients + (level - 2) * GRADIENT_LEVEL, block, level);
     Above even = {0, 0, {0, 0}}, odd = even;
     next_gradients(row, &even, &odd);
     next_gradients(row + STRIDE, &even, &odd);
@@ -87,16 +83,17 @@ inline void measure_block(const uchar *row, int rows, const float *spread, int z
     for (int y = 0; y < rows; y += ROUND) {
         __attribute__((opencl_unroll_hint))
         for (int phase = 0; phase < ROUND; phase++) {
-            PREFETCH(ahead.row);
-            if (y + phase < 2 * MARGIN_Y)
-                PREFETCH(ahead.row - ahead.stride * (2 * MARGIN_Y));
-            ahead.row += ahead.stride;
+            ask_for_row(ahead, block, y + phase);
+            __attribute__((opencl_unroll_hint))
+            for (int level = 2; level <= LEVELS; level++)
+                if (phase % level == LOWER_HALF(level))
+                    next_coarse_row(coarse + level - 2, block, level);
             const Columns fine = next_gradients(row, &even, &odd);
             const float16 columns[4] = {even_lanes(fine.even), even_lanes(fine.odd), odd_lanes(fine.even),
                                         odd_lanes(fine.odd)};
             __attribute__((opencl_unroll_hint))
             for (int i = 0; i < 4; i++)
-                take(product_of_levels(columns[i], spread + 16 * i, y, phase), z, best + 16 * i, sum + 16 * i);
+                take(product_of_levels(columns[i], coarse, i, phase), z, best + 16 * i, sum + 16 * i);
             row += STRIDE;
             best += BLOCK;
             sum += BLOCK;
@@ -176,7 +173,6 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     SCRATCH uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
     SCRATCH ushort sums[COARSE_ROWS * COARSE_STRIDE + 64];
     SCRATCH ushort gradients[(LEVELS > 1 ? LEVELS - 1 : 1) * GRADIENT_LEVEL];
-    SCRATCH float spread[(LEVELS > 1 ? LEVELS - 1 : 1) * SPREAD_LEVEL];
     SCRATCH int best[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
     SCRATCH float sum[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
 
@@ -194,18 +190,14 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
             downsample(luma, tile, sums, level);
             coarse_gradient(sums, tile, gradients + (level - 2) * GRADIENT_LEVEL, level);
         }
-        Ahead ahead = tile_ahead(stack, table, tile, z, planes, width);
-        for (int block = 0; block * BLOCK < tile.columns; block++, ahead.row += BLOCK) {
-            __attribute__((opencl_unroll_hint))
-            for (int level = 2; level <= LEVELS; level++)
-                spread_block(gradients + (level - 2) * GRADIENT_LEVEL, tile.whole_rows, block,
-                             spread + (level - 2) * SPREAD_LEVEL, level);
+        const Ahead ahead = tile_ahead(stack, table, tile, z, planes, width);
+        for (int block = 0; block * BLOCK < tile.columns; block++) {
             int *block_best = best + block * BLOCK_PIXELS;
             float *block_sum = sum + block * BLOCK_PIXELS;
             if (z == 0)
                 clear_block(block_best, block_sum);
-            measure_block(luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK, tile.whole_rows, spread, z, ahead,
-                          block_best, block_sum);
+            measure_block(luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK, gradients, tile.whole_rows, block, z,
+                          ahead, block_best, block_sum);
         }
     }
     tile_statistics(stack, table, tile, mean_luma, moved, width, planes, threshold_bits);
