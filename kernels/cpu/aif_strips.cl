@@ -2,15 +2,16 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * The all-in-focus picture of aif.cl for CPUs, at the depth of soften_depth.cl, samples of 8 bits: one work-item a
- * strip of STRIP rows, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane,
- * which moves a sample by at most 1/512 of what it changes from one plane to the next.
+ * strip of STRIP rows, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane
+ * and, means being taken in 16 bits, at most 0.5 + N / 36 of these off; as much of 1/256 of what a sample changes from
+ * one plane to the next.
  */
 #include "../noise_type.cl"
 #include "lanes32.cl"
 
 #define UNIT 256 /* positions a plane */
 #define NO_POSITION 65535
-#define STRIP 8 /* rows, an even number */
+#define STRIP 16 /* rows, an even number */
 #define MOST_COLUMNS 8192
 #define STRIDE (MOST_COLUMNS + 64)
 #define NONE 65535 /* no depth around, less 1 */
@@ -32,12 +33,12 @@ typedef struct {
     float scale;
 } Depth;
 
-inline __global const ushort *depth_row(const Depth *depth, int y)
+INLINE __global const ushort *depth_row(const Depth *depth, int y)
 {
     return depth->pixels + (ulong)clamp(y, 0, depth->height - 1) * depth->stride;
 }
 
-inline ushort position_of(const Depth *depth, ushort pixel)
+INLINE ushort position_of(const Depth *depth, ushort pixel)
 {
     if (depth->scale > 0.0f)
         return pixel ? (ushort)((pixel - 1) * depth->scale + 0.5f) : (ushort)NO_POSITION;
@@ -45,7 +46,7 @@ inline ushort position_of(const Depth *depth, ushort pixel)
 }
 
 /* Positions of 16 depth pixels less 1, given as whole numbers or means. */
-inline ushort16 positions_of(const Depth *depth, float16 pixels)
+INLINE ushort16 positions_of(const Depth *depth, float16 pixels)
 {
     if (depth->scale > 0.0f)
         return convert_ushort16(pixels * depth->scale + 0.5f);
@@ -56,60 +57,101 @@ inline ushort16 positions_of(const Depth *depth, float16 pixels)
     return *(lanes16 *)lanes;
 }
 
-/* The least depth around each pixel of a row, less 1. Returns whether any pixel of the row has no depth. */
-inline int nearest_row(const Depth *depth, int y, ushort *nearest)
+/* The least of three neighbours in a row, less 1; `most`: the greatest of the middle ones and of itself. */
+INLINE ushort32 least_of_3(__global const ushort *row, ushort32 *most)
 {
-    __global const ushort *above = depth_row(depth, y - 1), *here = depth_row(depth, y);
-    __global const ushort *below = depth_row(depth, y + 1);
-    const int width = depth->width;
-    ushort32 unknown = 0;
-    nearest[0] = here[0] - 1;
-    nearest[width - 1] = here[width - 1] - 1;
-    for (int block = 1; block < width - 1; block += 32) {
-        const int x = min(block, width - 33);
-        ushort32 least = NONE;
-        for (int i = -1; i <= 1; i++) {
-            const ushort32 a = *(__global const lanes32 *)(above + x + i) - (ushort)1;
-            const ushort32 b = *(__global const lanes32 *)(here + x + i) - (ushort)1;
-            const ushort32 c = *(__global const lanes32 *)(below + x + i) - (ushort)1;
-            least = min32(least, min32(min32(a, b), c));
-            unknown |= as_ushort32(b == (ushort)NONE);
-        }
-        *(lanes32 *)(nearest + x) = least;
-    }
-    const uint16 either = as_uint16(unknown);
-    return any(either != 0);
+    const ushort32 left = *(__global const lanes32 *)(row - 1) - (ushort)1;
+    const ushort32 here = *(__global const lanes32 *)row - (ushort)1;
+    const ushort32 right = *(__global const lanes32 *)(row + 1) - (ushort)1;
+    *most = max32(*most, here);
+    return min32(min32(left, here), right);
 }
 
-/* Sum of three neighbours in a row. */
-inline float16 sum_3(const ushort *row)
+INLINE void copy_row(const ushort *row, ushort *copy, int width)
 {
-    return convert_float16(convert_int16(*(const lanes16 *)(row - 1)) + convert_int16(*(const lanes16 *)row) +
-                           convert_int16(*(const lanes16 *)(row + 1)));
+    FOR_EACH_32(x, width)
+        *(lanes32 *)(copy + x) = *(const lanes32 *)(row + x);
+}
+
+/* The least depth around each pixel of a strip's rows, less 1, and of the ones before and after it. Returns whether any
+ * pixel around has no depth. */
+INLINE int nearest_rows(const Depth *depth, int top, int rows, ushort *nearest)
+{
+    const int width = depth->width;
+    __global const ushort *lines[STRIP + 4];
+    for (int y = 0; y < rows + 4; y++)
+        lines[y] = depth_row(depth, top - 2 + y);
+
+    ushort32 most = 0;
+    for (int block = 1; block < width - 1; block += 32) {
+        const int x = min(block, width - 33);
+        ushort32 above = least_of_3(lines[0] + x, &most), here = least_of_3(lines[1] + x, &most);
+        for (int y = 0; y < rows + 2; y++) {
+            const ushort32 below = least_of_3(lines[y + 2] + x, &most);
+            PREFETCH(lines[y + 2] + x + 256);
+            *(lanes32 *)(nearest + y * STRIDE + x) = min32(min32(above, here), below);
+            above = here;
+            here = below;
+        }
+    }
+    int unknown = __builtin_reduce_max(most) == NONE;
+    for (int y = 0; y < rows + 2; y++) {
+        ushort *row = nearest + y * STRIDE;
+        row[0] = lines[y + 1][0] - 1;
+        row[width - 1] = lines[y + 1][width - 1] - 1;
+        unknown |= row[0] == NONE || row[width - 1] == NONE;
+    }
+    if (top == 0)
+        copy_row(nearest + STRIDE, nearest, width);
+    if (top + rows == depth->height)
+        copy_row(nearest + rows * STRIDE, nearest + (rows + 1) * STRIDE, width);
+    return unknown;
+}
+
+/* Sum of three neighbours in a row, in parts of 9. */
+INLINE ushort32 third_of_mean(const ushort *row)
+{
+    const ushort32 ninth = (ushort)7282; /* of 65536 */
+    return part_of(*(const lanes32 *)(row - 1), ninth) + part_of(*(const lanes32 *)row, ninth) +
+           part_of(*(const lanes32 *)(row + 1), ninth);
+}
+
+/* Positions of 32 depth pixels less 1. */
+INLINE ushort32 positions_of_32(const Depth *depth, ushort32 pixels)
+{
+    if (depth->scale > 0.0f) {
+        const ushort scale = (ushort)(depth->scale * 65536.0f + 0.5f), rounding = 32768 / scale;
+        return part_of(min32(pixels, (ushort)(65535 - rounding)) + rounding, scale);
+    }
+    ushort lanes[32];
+    *(lanes32 *)lanes = min32(pixels, (ushort)65534) + (ushort)1;
+    for (int i = 0; i < 32; i++)
+        lanes[i] = depth->positions[lanes[i]];
+    return *(lanes32 *)lanes;
 }
 
 /* Softened positions of a strip, all of whose pixels have a depth; nearest: the rows from the one before on. */
-inline void soften(const Depth *depth, const ushort *nearest, int rows, ushort *positions)
+INLINE void soften(const Depth *depth, const ushort *nearest, int rows, ushort *positions)
 {
-    for (int block = 1; block < depth->width - 1; block += 16) {
-        const int x = min(block, depth->width - 17);
-        float16 before = sum_3(nearest + x), here = sum_3(nearest + STRIDE + x);
+    for (int block = 1; block < depth->width - 1; block += 32) {
+        const int x = min(block, depth->width - 33);
+        ushort32 before = third_of_mean(nearest + x), here = third_of_mean(nearest + STRIDE + x);
         for (int y = 0; y < rows; y++) {
-            const float16 after = sum_3(nearest + (y + 2) * STRIDE + x);
-            *(lanes16 *)(positions + y * STRIDE + x) = positions_of(depth, (before + here + after) * (1.0f / 9.0f));
+            const ushort32 after = third_of_mean(nearest + (y + 2) * STRIDE + x);
+            *(lanes32 *)(positions + y * STRIDE + x) = positions_of_32(depth, before + here + after + (ushort)4);
             before = here;
             here = after;
         }
     }
 }
 
-inline int16 or_own(ushort16 other, ushort16 own)
+INLINE int16 or_own(ushort16 other, ushort16 own)
 {
     return convert_int16(select(other, own, other == (ushort16)NONE));
 }
 
 /* The same where some pixels have no depth: they keep none and count for no other. */
-inline void soften_known(const Depth *depth, const ushort *nearest, int top, int rows, ushort *positions)
+INLINE void soften_known(const Depth *depth, const ushort *nearest, int top, int rows, ushort *positions)
 {
     for (int y = 0; y < rows; y++)
         for (int block = 1; block < depth->width - 1; block += 16) {
@@ -127,12 +169,10 @@ inline void soften_known(const Depth *depth, const ushort *nearest, int top, int
 }
 
 /* Positions of the strip's pixels, the last column and the last row twice. Returns whether some have none. */
-inline int strip_positions(const Depth *depth, int top, int rows, ushort *positions)
+INLINE int strip_positions(const Depth *depth, int top, int rows, ushort *positions)
 {
     ushort nearest[(STRIP + 2) * STRIDE];
-    int unknown = 0;
-    for (int y = -1; y <= rows; y++)
-        unknown |= nearest_row(depth, clamp(top + y, 0, depth->height - 1), nearest + (y + 1) * STRIDE);
+    int unknown = nearest_rows(depth, top, rows, nearest);
     if (unknown)
         soften_known(depth, nearest, top, rows, positions);
     else
@@ -152,7 +192,7 @@ inline int strip_positions(const Depth *depth, int top, int rows, ushort *positi
 }
 
 /* Sum of those that are known, and minus their number. */
-inline void add_known(uint16 position, uint16 *sum, int16 *known)
+INLINE void add_known(uint16 position, uint16 *sum, int16 *known)
 {
     const int16 is_known = position != (uint16)NO_POSITION;
     *sum += position & as_uint16(is_known);
@@ -160,7 +200,7 @@ inline void add_known(uint16 position, uint16 *sum, int16 *known)
 }
 
 /* Positions of 16 chroma samples: means of 2 x 2 pixels, over those that are known. */
-inline ushort16 chroma_positions(const ushort *above, int unknown)
+INLINE ushort16 chroma_positions(const ushort *above, int unknown)
 {
     const ushort32 a = *(const lanes32 *)above, b = *(const lanes32 *)(above + STRIDE);
     if (!unknown) {
@@ -178,7 +218,7 @@ inline ushort16 chroma_positions(const ushort *above, int unknown)
 }
 
 /* Positions of the part-th 16 samples of 16 pixels with interleaved channels. */
-inline ushort16 positions_of_samples(ushort16 p, int channels, int part)
+INLINE ushort16 positions_of_samples(ushort16 p, int channels, int part)
 {
     switch (channels) {
     case 2:
@@ -196,7 +236,7 @@ inline ushort16 positions_of_samples(ushort16 p, int channels, int part)
 }
 
 /* Positions of a row's samples from those of its pixels. */
-inline void sample_positions(const ushort *positions, const Component *component, int unknown, ushort *samples)
+INLINE void sample_positions(const ushort *positions, const Component *component, int unknown, ushort *samples)
 {
     const int pixels = component->width / component->channels;
     for (int x = 0; x < pixels; x += 16) {
@@ -214,12 +254,12 @@ typedef struct {
     int planes;
 } Source;
 
-inline __global const uchar *samples_at(const Source *source, int z, int x, int y)
+INLINE __global const uchar *samples_at(const Source *source, int z, int x, int y)
 {
     return source->stack + source->rows[z].x + source->rows[z].y * (ulong)y + x;
 }
 
-inline uchar16 mean_samples(const Source *source, int x, int y)
+INLINE uchar16 mean_samples(const Source *source, int x, int y)
 {
     ushort16 sum = 0;
     for (int z = 0; z < source->planes; z++)
@@ -227,37 +267,39 @@ inline uchar16 mean_samples(const Source *source, int x, int y)
     return convert_uchar16(convert_float16(sum) / source->planes + 0.5f);
 }
 
-/* Planes that hold what is needed at some of 32 positions, or 16: from x to y. */
-inline ushort lowest(ushort16 v)
+/* Planes that hold what is needed at positions from `least` to `most`: from x to y. */
+INLINE int2 planes_between(ushort least, ushort most, int planes)
 {
-    const ushort8 a = min(v.lo, v.hi);
-    const ushort4 b = min(a.lo, a.hi);
-    const ushort2 c = min(b.lo, b.hi);
-    return min(c.lo, c.hi);
+    return (int2)(least / UNIT, min(most / UNIT + 1, planes - 1));
 }
 
-inline int2 planes_around(ushort16 least, ushort16 most, int planes)
+/* Between the two planes around each position: mostly the same two for all. */
+INLINE uchar32 linear_samples(const Source *source, int x, int y, ushort32 position)
 {
-    return (int2)(lowest(least) / UNIT, min((65535 - lowest(~most)) / UNIT + 1, planes - 1));
-}
-
-/* Between the two planes around each position. */
-inline uchar32 linear_samples(const Source *source, int x, int y, ushort32 position)
-{
-    const ushort16 a = first_half(position), b = second_half(position);
-    const int2 range = planes_around(min(a, b), max(a, b), source->planes);
+    const int first = min(position[0] / UNIT, source->planes - 2);
+    const ushort32 share = position - (ushort)(first * UNIT);
     ushort32 sum = UNIT / 2;
-    for (int z = range.x; z <= range.y; z++) {
-        const short32 away = as_short32(position) - (short)(z * UNIT);
-        const short32 weight = higher((short)UNIT - higher(away, -away), (short32)0);
-        sum += as_ushort32(weight) * widen(*(__global const bytes32 *)samples_at(source, z, x, y));
-        PREFETCH(samples_at(source, z, x, y + 1));
+    if (__builtin_reduce_or(share > (ushort)UNIT) == 0) {
+        const ushort32 before = widen(*(__global const bytes32 *)samples_at(source, first, x, y));
+        const ushort32 after = widen(*(__global const bytes32 *)samples_at(source, first + 1, x, y));
+        PREFETCH(samples_at(source, first, x, y + 1));
+        PREFETCH(samples_at(source, first + 1, x, y + 1));
+        sum += before * (ushort)UNIT + share * (after - before);
+    } else {
+        const int2 range =
+            planes_between(__builtin_reduce_min(position), __builtin_reduce_max(position), source->planes);
+        for (int z = range.x; z <= range.y; z++) {
+            const short32 away = as_short32(position) - (short)(z * UNIT);
+            const short32 weight = higher((short)UNIT - higher(away, -away), (short32)0);
+            sum += as_ushort32(weight) * widen(*(__global const bytes32 *)samples_at(source, z, x, y));
+            PREFETCH(samples_at(source, z, x, y + 1));
+        }
     }
     return __builtin_convertvector(sum >> (ushort)8, uchar32);
 }
 
 /* 2^x for x in -64..0, to 2e-4 (exp2() takes the lanes one by one). */
-inline float16 power_of_2(float16 x)
+INLINE float16 power_of_2(float16 x)
 {
     const int16 whole = convert_int16(x) - 1;
     const float16 f = x - convert_float16(whole);
@@ -269,7 +311,7 @@ inline float16 power_of_2(float16 x)
 #define SOFT_PLANES 0.6f
 #define LOG2_E 1.44269504f
 
-inline uchar16 soft_samples(const Source *source, int x, int y, ushort16 position, int first, int last)
+INLINE uchar16 soft_samples(const Source *source, int x, int y, ushort16 position, int first, int last)
 {
     const float16 u = convert_float16(position) * (1.0f / UNIT);
     const int16 floor_u = convert_int16(position) / UNIT;
@@ -286,10 +328,11 @@ inline uchar16 soft_samples(const Source *source, int x, int y, ushort16 positio
 }
 
 /* The softened mean, or without noise the linear one, where some positions may be unknown. */
-inline uchar16 any_samples(const Source *source, int x, int y, ushort16 position, int soft)
+INLINE uchar16 any_samples(const Source *source, int x, int y, ushort16 position, int soft)
 {
     const short16 none = position == (ushort16)NO_POSITION;
-    const int2 range = planes_around(position, position & ~as_ushort16(none), source->planes);
+    const int2 range = planes_between(__builtin_reduce_min(position),
+                                      __builtin_reduce_max(position & ~as_ushort16(none)), source->planes);
     uchar16 value;
     if (soft) {
         value = soft_samples(source, x, y, position, range.x, range.y);
@@ -325,14 +368,18 @@ __kernel void compose_strip(__global const uchar *stack, __global const ulong2 *
         for (int row = 0; row < rows; row += component.subsampling) {
             const int y = (top + row) / component.subsampling;
             __global uchar *out = picture + component.offset + component.stride * (ulong)y;
-            sample_positions(positions + row * STRIDE, &component, unknown, samples);
+            const ushort *position = positions + row * STRIDE;
+            if (component.channels > 1 || component.subsampling > 1) {
+                sample_positions(position, &component, unknown, samples);
+                position = samples;
+            }
             if (soft || unknown)
                 FOR_EACH_16(x, component.width)
                     *(__global lanes8 *)(out + x) =
-                        any_samples(&source, x, y, *(const lanes16 *)(samples + x), soft);
+                        any_samples(&source, x, y, *(const lanes16 *)(position + x), soft);
             else
                 FOR_EACH_32(x, component.width)
-                    *(__global bytes32 *)(out + x) = linear_samples(&source, x, y, *(const lanes32 *)(samples + x));
+                    *(__global bytes32 *)(out + x) = linear_samples(&source, x, y, *(const lanes32 *)(position + x));
         }
     }
 }

@@ -39,6 +39,11 @@ inline ushort32 min32(ushort32 a, ushort32 b)
     return a < b ? a : b;
 }
 
+inline ushort32 max32(ushort32 a, ushort32 b)
+{
+    return a > b ? a : b;
+}
+
 inline ushort32 widen(uchar32 v)
 {
     return __builtin_convertvector(v, ushort32);
@@ -52,6 +57,27 @@ inline ushort16 first_half(ushort32 v)
 inline ushort16 second_half(ushort32 v)
 {
     return __builtin_shufflevector(v, v, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31);
+}
+
+typedef uint __attribute__((ext_vector_type(32))) wide32;
+
+inline wide32 as_wide(ushort32 v)
+{
+    return __builtin_convertvector(v, wide32);
+}
+
+/* a b / 65536, rounded down. Compilers know it as one instruction, but do not see it in a loop with the same b. */
+INLINE ushort32 part_of(ushort32 a, ushort32 b)
+{
+#if defined __AVX512BW__
+    return as_ushort32(__builtin_ia32_pmulhuw512(as_short32(a), as_short32(b)));
+#elif defined __AVX2__
+    const short16 low = __builtin_ia32_pmulhuw256(as_short16(first_half(a)), as_short16(first_half(b)));
+    const short16 high = __builtin_ia32_pmulhuw256(as_short16(second_half(a)), as_short16(second_half(b)));
+    return as_ushort32((short32)(low, high));
+#else
+    return __builtin_convertvector((as_wide(a) * as_wide(b)) >> 16u, ushort32);
+#endif
 }
 
 typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */

@@ -12,11 +12,6 @@
 #define STRIP 36    /* rows a work-item */
 #define SEGMENT 256 /* columns a work-item; the last one has the rest too, so that none has less than 64 */
 
-inline ushort32 max32(ushort32 a, ushort32 b)
-{
-    return a > b ? a : b;
-}
-
 /* Greatest of 7 neighbours in a row, for 32 pixels. */
 inline ushort32 row_maximum(__global const ushort *peak)
 {

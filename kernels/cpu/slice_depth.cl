@@ -23,31 +23,10 @@
 #define STRIDE (MARGIN + TILE_WIDTH + MARGIN)
 #define TILE_COLUMNS ((TILE_WIDTH + 2 * RADIUS) / SIGMA_XY + 2) /* of the grid */
 
-typedef uint __attribute__((ext_vector_type(32))) wide32;
-
-inline wide32 as_wide(ushort32 v)
-{
-    return __builtin_convertvector(v, wide32);
-}
-
 /* (a + b) / 2, halves rounded up: compilers know it as one instruction. */
 INLINE ushort32 mean_of(ushort32 a, ushort32 b)
 {
     return __builtin_convertvector((as_wide(a) + as_wide(b) + 1u) >> 1u, ushort32);
-}
-
-/* a b / 65536, rounded down: this they do not see in a loop with the same b. */
-INLINE ushort32 part_of(ushort32 a, ushort32 b)
-{
-#if defined __AVX512BW__
-    return as_ushort32(__builtin_ia32_pmulhuw512(as_short32(a), as_short32(b)));
-#elif defined __AVX2__
-    const short16 low = __builtin_ia32_pmulhuw256(as_short16(first_half(a)), as_short16(first_half(b)));
-    const short16 high = __builtin_ia32_pmulhuw256(as_short16(second_half(a)), as_short16(second_half(b)));
-    return as_ushort32((short32)(low, high));
-#else
-    return __builtin_convertvector((as_wide(a) * as_wide(b)) >> 16u, ushort32);
-#endif
 }
 
 /* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. */

@@ -13,7 +13,7 @@ namespace {
 
 /* aif_strips.cl */
 constexpr double fixed_unit = 256.0; /* UNIT */
-constexpr size_t strip = 8;
+constexpr size_t strip = 16;
 constexpr uint32_t most_columns = 8192;
 constexpr cl_ushort no_fixed_position = 65535; /* NO_POSITION */
 
