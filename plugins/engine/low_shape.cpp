@@ -5,7 +5,6 @@
 #include "engine/engine_error.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace dff {
 
@@ -46,15 +45,6 @@ LowShape::LowShape(const StackShape &shape, unsigned wish)
       height(static_cast<cl_int>(shape.height) / scale), stride(stride_for(width)),
       planes(static_cast<cl_int>(shape.planes)), strip(strip_for(height))
 {
-}
-
-LowShape LowShape::transposed() const
-{
-    LowShape other = *this;
-    std::swap(other.width, other.height);
-    other.stride = stride_for(other.width);
-    other.strip = strip_for(other.height);
-    return other;
 }
 
 cl::Buffer LowShape::allocate(CommandQueue &queue, size_t pictures) const

@@ -21,9 +21,6 @@ struct LowShape {
     cl_int planes;
     cl_int strip; /* rows a work-item takes, where it takes more than one */
 
-    /* The same with rows and columns exchanged. */
-    LowShape transposed() const;
-
     /* Room for `pictures` low pictures, all 0. */
     cl::Buffer allocate(CommandQueue &queue, size_t pictures) const;
     cl::Buffer allocate_shorts(CommandQueue &queue, size_t pictures) const;

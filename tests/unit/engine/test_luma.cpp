@@ -8,21 +8,35 @@
 
 using namespace dff;
 
+namespace {
+
+struct Stages {
+    explicit Stages(const TestStack &stack)
+        : queue(Device::open("")), buffer(queue, stack.shape), luma(queue, stack.shape),
+          reference(queue, stack.shape, true)
+    {
+        buffer.assign(stack.view());
+        luma.run(buffer);
+        reference.run(buffer, luma);
+    }
+
+    CommandQueue queue;
+    StackBuffer buffer;
+    Luma luma;
+    ReferenceImage reference;
+};
+
+} // namespace
+
 class EveryFormat : public testing::TestWithParam<PixelFormat> {};
 
 TEST_P(EveryFormat, reference_agrees_with_its_twin)
 {
     const TestStack stack({GetParam(), 71, 67, 5});
-    CommandQueue queue(Device::open(""));
-    StackBuffer buffer(queue, stack.shape);
-    Luma luma(queue, stack.shape);
-    ReferenceImage reference(queue, stack.shape, true);
-    buffer.assign(stack.view());
-    luma.run(buffer);
-    reference.run(buffer, luma);
+    Stages stages(stack);
 
     const std::vector<uint8_t> expected = twin::mean_luma(twin::luma(stack));
-    const auto found = read_back<uint8_t>(queue, reference.y(), expected.size());
+    const auto found = read_back<uint8_t>(stages.queue, stages.reference.y(), expected.size());
     for (size_t i = 0; i < found.size(); i++)
         ASSERT_NEAR(found[i], expected[i], 1) << "pixel " << i;
 }
@@ -30,17 +44,11 @@ TEST_P(EveryFormat, reference_agrees_with_its_twin)
 TEST_P(EveryFormat, chroma_of_gray_is_neutral_and_of_colours_is_not)
 {
     const TestStack stack({GetParam(), 64, 64, 3});
-    CommandQueue queue(Device::open(""));
-    StackBuffer buffer(queue, stack.shape);
-    Luma luma(queue, stack.shape);
-    ReferenceImage reference(queue, stack.shape, true);
-    buffer.assign(stack.view());
-    luma.run(buffer);
-    reference.run(buffer, luma);
+    Stages stages(stack);
 
     const bool gray = GetParam() == PixelFormat::Gray8 || GetParam() == PixelFormat::Gray16;
-    for (const cl::Buffer *chroma : {&reference.u(), &reference.v()}) {
-        const auto values = read_back<uint8_t>(queue, *chroma, 64 * 64);
+    for (const cl::Buffer *chroma : {&stages.reference.u(), &stages.reference.v()}) {
+        const auto values = read_back<uint8_t>(stages.queue, *chroma, 64 * 64);
         const bool neutral = std::all_of(values.begin(), values.end(), [](uint8_t c) { return c == 128; });
         EXPECT_EQ(neutral, gray);
     }
@@ -55,15 +63,9 @@ TEST(ReferenceImage, chroma_of_i420_and_nv12_is_the_mean_of_their_samples)
 {
     for (const PixelFormat format : {PixelFormat::I420, PixelFormat::Nv12}) {
         const TestStack stack({format, 65, 67, 3});
-        CommandQueue queue(Device::open(""));
-        StackBuffer buffer(queue, stack.shape);
-        Luma luma(queue, stack.shape);
-        ReferenceImage reference(queue, stack.shape, true);
-        buffer.assign(stack.view());
-        luma.run(buffer);
-        reference.run(buffer, luma);
-        const auto u = read_back<uint8_t>(queue, reference.u(), 65 * 67);
-        const auto v = read_back<uint8_t>(queue, reference.v(), 65 * 67);
+        Stages stages(stack);
+        const auto u = read_back<uint8_t>(stages.queue, stages.reference.u(), 65 * 67);
+        const auto v = read_back<uint8_t>(stages.queue, stages.reference.v(), 65 * 67);
         for (unsigned y = 0; y < 67; y++)
             for (unsigned x = 0; x < 65; x++) {
                 unsigned sum_u = 0, sum_v = 0;

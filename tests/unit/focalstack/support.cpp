@@ -2,20 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
-#include <gtest/gtest.h>
-
-namespace {
-
-class GStreamerEnvironment : public testing::Environment {
-public:
-    void SetUp() override { gst_init(nullptr, nullptr); }
-};
-
-[[maybe_unused]] testing::Environment *const environment =
-    testing::AddGlobalTestEnvironment(new GStreamerEnvironment);
-
-} // namespace
-
 GstVideoInfo video_info(const char *format, int width, int height)
 {
     GstVideoInfo info;

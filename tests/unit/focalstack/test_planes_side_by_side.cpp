@@ -42,51 +42,56 @@ TEST(FrameNumbering, without_times_frames_are_counted)
     EXPECT_EQ(numbering.next(std::nullopt, 100, 0), 1u);
 }
 
-TEST(SweepGate, a_fast_source_waits_for_a_slow_one)
-{
+/* With two sources, 0 and 1. */
+class TwoSources : public testing::Test {
+protected:
+    TwoSources()
+    {
+        gate.open(0);
+        gate.open(1);
+    }
+
+    std::future<bool> wait(unsigned plane)
+    {
+        return std::async(std::launch::async, [this, plane] { return gate.wait(plane); });
+    }
+
     SweepGate gate;
-    gate.open(0);
-    gate.open(1);
+};
+
+TEST_F(TwoSources, a_fast_source_waits_for_a_slow_one)
+{
     gate.arrive(1, 0);
     gate.arrive(0, 2);
-    auto fast = std::async(std::launch::async, [&] { return gate.wait(0); });
+    auto fast = wait(0);
     EXPECT_EQ(fast.wait_for(50ms), std::future_status::timeout);
     gate.arrive(1, 1);
     EXPECT_EQ(fast.wait_for(5s), std::future_status::ready);
     EXPECT_TRUE(fast.get());
 }
 
-TEST(SweepGate, nobody_waits_for_a_source_that_ended)
+TEST_F(TwoSources, nobody_waits_for_a_source_that_ended)
 {
-    SweepGate gate;
-    gate.open(0);
-    gate.open(1);
     gate.arrive(0, 7);
-    auto other = std::async(std::launch::async, [&] { return gate.wait(0); });
+    auto other = wait(0);
     gate.close(1);
     ASSERT_EQ(other.wait_for(5s), std::future_status::ready);
     EXPECT_TRUE(other.get());
 }
 
-TEST(SweepGate, shutting_wakes_who_waits)
+TEST_F(TwoSources, shutting_wakes_who_waits)
 {
-    SweepGate gate;
-    gate.open(0);
-    gate.open(1);
     gate.arrive(0, 1);
-    auto waiting = std::async(std::launch::async, [&] { return gate.wait(0); });
+    auto waiting = wait(0);
     gate.shut();
     ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
     EXPECT_FALSE(waiting.get());
 }
 
-TEST(SweepGate, a_source_that_is_taken_away_does_not_wait)
+TEST_F(TwoSources, a_source_that_is_taken_away_does_not_wait)
 {
-    SweepGate gate;
-    gate.open(0);
-    gate.open(1);
     gate.arrive(0, 5);
-    auto waiting = std::async(std::launch::async, [&] { return gate.wait(0); });
+    auto waiting = wait(0);
     gate.close(0);
     ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
     EXPECT_FALSE(waiting.get());
