@@ -69,7 +69,7 @@ void AifPicture::fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend ble
         layout.push_back({GST_VIDEO_INFO_PLANE_OFFSET(&frame, c),
                           static_cast<uint64_t>(GST_VIDEO_INFO_PLANE_STRIDE(&frame, c))});
 
-    const MappedStack mapped_stack(stack_, stack);
+    const MappedStack mapped_stack(stack_, stack, *device_);
     std::optional<MappedFrame> mapped_depth;
     AifComposer::DepthView depth_view{std::as_bytes(std::span(no_depth_)),
                                       sizeof(guint16) * static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&frame))};

@@ -154,7 +154,7 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         return GST_FLOW_NOT_NEGOTIATED;
     }
     try {
-        const dff::MappedStack mapped(state.depth.stack(), stack);
+        const dff::MappedStack mapped(state.depth.stack(), stack, state.depth.device());
         if (const auto settings = changed_settings(state))
             state.depth.set_settings(*settings);
         const GstDepthInfo depth = state.depth.prepare(stack, state.next_stack);

@@ -18,6 +18,7 @@ class StackDepth {
 public:
     void start(std::shared_ptr<Device> device) { device_ = std::move(device); }
     void stop();
+    const Device &device() const { return *device_; }
 
     /* Settings of what comes from here on. */
     void set_settings(const DepthSettings &settings);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,6 +50,8 @@ struct PlaneIdentity {
     bool operator==(const PlaneIdentity &) const = default;
 };
 
+class SharedUpload;
+
 /* A stack in host memory: `layout[component * planes + z]` says where each component of each plane lies. */
 struct StackView {
     StackShape shape;
@@ -57,6 +60,9 @@ struct StackView {
 
     /* A plane each, where its picture is known to be its own; empty where nothing is known. */
     std::vector<std::optional<PlaneIdentity>> identities = {};
+
+    /* Of this memory, where other engines get the same stack; nullptr: each engine uploads it. */
+    std::shared_ptr<SharedUpload> upload = nullptr;
 };
 
 /* Layout of planes that follow each other in one memory without any padding. For tests and plain

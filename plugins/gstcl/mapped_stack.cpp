@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/mapped_stack.h"
 
+#include "gstcl/stack_upload.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -72,11 +74,14 @@ StackShape stack_shape(const GstFocalStackInfo &info)
             static_cast<uint32_t>(GST_VIDEO_INFO_HEIGHT(&info.frame)), info.planes};
 }
 
-MappedStack::MappedStack(const GstFocalStackInfo &info, GstBuffer *buffer) : buffer_(buffer)
+MappedStack::MappedStack(const GstFocalStackInfo &info, GstBuffer *buffer, const Device &device)
+    : buffer_(buffer)
 {
     view_.shape = stack_shape(info);
     view_.layout = locate_planes(info, buffer);
     view_.identities = identify_planes(info.planes, buffer);
+    if (!device.works_in_place())
+        view_.upload = shared_upload(buffer);
     if (!gst_buffer_map(buffer, &map_, GST_MAP_READ))
         throw std::runtime_error("The stack's memory cannot be read");
     view_.memory = {reinterpret_cast<const std::byte *>(map_.data), map_.size};

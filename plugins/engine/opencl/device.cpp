@@ -94,6 +94,16 @@ bool Device::is_called(const std::string &wish) const
     return has_name(device_, wish);
 }
 
+std::shared_ptr<UploadPool> Device::uploads(size_t bytes) const
+{
+    const std::lock_guard lock(mutex_);
+    std::erase_if(uploads_, [](const auto &entry) { return entry.second.expired(); });
+    std::shared_ptr<UploadPool> pool = uploads_[bytes].lock();
+    if (!pool)
+        uploads_[bytes] = pool = std::make_shared<UploadPool>(context_, bytes, global_memory_);
+    return pool;
+}
+
 std::shared_ptr<Device> Device::open(const std::string &wish)
 {
     /* Guards the list of open devices, and PoCL while it looks for its devices: a second thread that asks

@@ -4,9 +4,12 @@
 
 #include "engine/opencl/opencl.h"
 #include "engine/opencl/program_cache.h"
+#include "engine/opencl/upload_pool.h"
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -32,6 +35,9 @@ public:
     ProgramCache &programs() const { return *programs_; }
     std::string name() const;
 
+    /* The pool for stacks of this size, which lives as long as somebody has it. */
+    std::shared_ptr<UploadPool> uploads(size_t bytes) const;
+
     /* The name contains `wish`, ignoring case. */
     bool is_called(const std::string &wish) const;
 
@@ -51,6 +57,9 @@ private:
     KernelStyle kernel_style_;
     size_t global_memory_;
     size_t largest_allocation_;
+
+    mutable std::mutex mutex_; /* a leaf; guards the pools */
+    mutable std::map<size_t, std::weak_ptr<UploadPool>> uploads_;
 };
 
 /* Runs `work` and turns what the OpenCL driver throws into EngineError. */

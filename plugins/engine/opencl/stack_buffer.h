@@ -3,12 +3,14 @@
 #pragma once
 
 #include "engine/opencl/host_buffer.h"
+#include "engine/opencl/upload_pool.h"
 #include "engine/plane_tracker.h"
 
 namespace dff {
 
 /* A focal stack as the kernels see it: its bytes, and where each component of each plane starts. On a CPU the
- * bytes are used in place, so the view's memory must stay valid until the queue is finished. */
+ * bytes are used in place, elsewhere those of the view's shared upload or of one of its own, so the view must
+ * stay valid until the queue is finished. */
 class StackBuffer {
 public:
     StackBuffer(CommandQueue &queue, StackShape shape);
@@ -23,19 +25,22 @@ public:
     void remember(const StackView &view) { tracker_.remember(view); }
 
     const StackShape &shape() const { return shape_; }
-    const cl::Buffer &bytes() const { return bytes_.buffer(); }
+    const cl::Buffer &bytes() const { return bytes_; }
 
     /* ulong2 (offset, stride) in bytes for each component and plane: [component][z]. */
     const cl::Buffer &layout() const { return layout_; }
 
 private:
+    std::shared_ptr<cl::Buffer> upload_shared(const StackView &view);
+
     CommandQueue &queue_;
     StackShape shape_;
     std::vector<RowLayout> host_layout_;
     PlaneTracker tracker_;
     uint64_t changed_planes_ = ~uint64_t{0};
-    HostBuffer bytes_;
-    cl::Buffer layout_;
+    std::shared_ptr<UploadPool> uploads_; /* for stacks like the last one that was shared */
+    HostBuffer own_;
+    cl::Buffer bytes_, layout_;
 };
 
 } // namespace dff

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/aif_composer.h"
 #include "engine/focus_engine.h"
+#include "engine/opencl/shared_upload.h"
 #include "test_stack.h"
 
 #include <cstdlib>
@@ -49,6 +50,9 @@ void operator delete(void *block, size_t) noexcept
 }
 #endif
 
+/* How stacks come to the device. */
+enum class Uploads { None, Own, Shared };
+
 class SteadyState : public testing::TestWithParam<Method> {};
 
 /* 20 stacks, one after the other, to depth and an all-in-focus picture. */
@@ -61,8 +65,9 @@ TEST_P(SteadyState, nothing_is_allocated_a_stack_whether_the_device_works_in_pla
     std::vector<uint8_t> confidence(picture_bytes), motion(picture_bytes);
     std::vector<std::byte> picture(stacks[0].memory.size() / shape.planes), reference;
 
-    for (const bool in_place : {true, false}) {
-        const auto device = std::make_shared<Device>(Device::open("")->device(), std::nullopt, in_place);
+    for (const Uploads uploads : {Uploads::None, Uploads::Own, Uploads::Shared}) {
+        const auto device =
+            std::make_shared<Device>(Device::open("")->device(), std::nullopt, uploads == Uploads::None);
         DepthParameters parameters;
         parameters.method = GetParam();
         FocusEngine engine(device, shape, parameters);
@@ -75,7 +80,9 @@ TEST_P(SteadyState, nothing_is_allocated_a_stack_whether_the_device_works_in_pla
         for (unsigned k = 0; k < 20; k++) {
             if (k == 10)
                 device_buffers = host_blocks = 0;
-            const StackView view = stacks[k % stacks.size()].view();
+            StackView view = stacks[k % stacks.size()].view();
+            if (uploads == Uploads::Shared)
+                view.upload = std::make_shared<SharedUpload>();
             engine.compute(view, outputs);
             composer.compose(view, {std::as_bytes(std::span(depth)), shape.width * sizeof(uint16_t)},
                              AifComposer::Blend::Soft, picture, layout);
@@ -89,3 +96,17 @@ TEST_P(SteadyState, nothing_is_allocated_a_stack_whether_the_device_works_in_pla
 }
 
 INSTANTIATE_TEST_SUITE_P(Engine, SteadyState, testing::Values(Method::Paper, Method::Volume));
+
+TEST(UploadPool, buffers_take_a_quarter_of_the_devices_memory_and_are_used_again)
+{
+    const size_t bytes = 4096;
+    const auto pool = std::make_shared<UploadPool>(Device::open("")->context(), bytes, 8 * bytes);
+    std::shared_ptr<cl::Buffer> one = pool->take(), two = pool->take();
+    ASSERT_TRUE(one && two);
+    EXPECT_EQ(pool->take(), nullptr);
+    const cl_mem first = (*one)();
+    one.reset();
+    one = pool->take();
+    ASSERT_TRUE(one);
+    EXPECT_EQ((*one)(), first);
+}

@@ -4,7 +4,7 @@
  * SECTION:gstfocalstackmeta
  * @short_description: what is known of a focal stack
  */
-#include "gstfocalstackmeta.h"
+#include "gstfocalstackmeta-private.h"
 
 #include "gstdffbytes.h"
 #include "gstfocusmeta-private.h"
@@ -21,6 +21,33 @@ GType gst_focal_stack_meta_api_get_type(void)
     return type;
 }
 
+static void shared_clear(gpointer shared)
+{
+    gst_focal_stack_shared_set(shared, NULL, NULL);
+    g_mutex_clear(&((GstFocalStackShared *)shared)->mutex);
+}
+
+static GstFocalStackShared *shared_new(void)
+{
+    GstFocalStackShared *shared = g_atomic_rc_box_new0(GstFocalStackShared);
+
+    g_mutex_init(&shared->mutex);
+    return shared;
+}
+
+static void shared_unref(GstFocalStackShared *shared)
+{
+    g_atomic_rc_box_release_full(shared, shared_clear);
+}
+
+void gst_focal_stack_shared_set(GstFocalStackShared *shared, gpointer data, GDestroyNotify destroy)
+{
+    if (shared->destroy)
+        shared->destroy(shared->data);
+    shared->data = data;
+    shared->destroy = destroy;
+}
+
 static gboolean init(GstMeta *meta, gpointer params, GstBuffer *buffer)
 {
     GstFocalStackMeta *self = (GstFocalStackMeta *)meta;
@@ -33,6 +60,7 @@ static gboolean init(GstMeta *meta, gpointer params, GstBuffer *buffer)
     self->missing = 0;
     self->repeated = 0;
     self->focus = NULL;
+    self->shared = shared_new();
     return TRUE;
 }
 
@@ -40,6 +68,14 @@ static void release(GstMeta *meta, GstBuffer *buffer)
 {
     (void)buffer;
     g_clear_pointer(&((GstFocalStackMeta *)meta)->focus, g_free);
+    g_clear_pointer(&((GstFocalStackMeta *)meta)->shared, shared_unref);
+}
+
+/* A copy of the metadata alone. */
+static gboolean has_same_memory(GstBuffer *one, GstBuffer *other)
+{
+    return gst_buffer_n_memory(one) == 1 && gst_buffer_n_memory(other) == 1 &&
+           gst_buffer_peek_memory(one, 0) == gst_buffer_peek_memory(other, 0);
 }
 
 static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buffer, GQuark type,
@@ -47,7 +83,6 @@ static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buff
 {
     const GstFocalStackMeta *self = (GstFocalStackMeta *)meta;
 
-    (void)buffer;
     (void)type;
     (void)data;
     if (gst_buffer_get_focal_stack_meta(destination))
@@ -60,6 +95,10 @@ static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buff
     copy->missing = self->missing;
     copy->repeated = self->repeated;
     memcpy(copy->focus, self->focus, self->planes * sizeof(GstFocusInfo));
+    if (has_same_memory(destination, buffer)) {
+        shared_unref(copy->shared);
+        copy->shared = g_atomic_rc_box_acquire(self->shared);
+    }
     return TRUE;
 }
 

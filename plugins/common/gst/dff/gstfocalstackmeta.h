@@ -11,6 +11,7 @@ G_BEGIN_DECLS
 #define GST_FOCAL_STACK_META_INFO (gst_focal_stack_meta_get_info())
 
 typedef struct _GstFocalStackMeta GstFocalStackMeta;
+typedef struct _GstFocalStackShared GstFocalStackShared;
 
 /**
  * GstFocalStackMeta:
@@ -34,6 +35,7 @@ struct _GstFocalStackMeta {
 
     /*< private >*/
     GstFocusInfo *focus;
+    GstFocalStackShared *shared;
 };
 
 GST_DFF_API GType gst_focal_stack_meta_api_get_type(void);
