@@ -48,7 +48,7 @@ add_count() {
 # meson_tests FOLDER: each Meson test counts once.
 meson_tests() {
     local log="$1/tests.log" bad
-    meson test -C "$1" --no-rebuild --print-errorlogs --num-processes 2 2>&1 | tee "$log" | grep -E '^ *[0-9]+/[0-9]+ '
+    meson test -C "$1" --no-rebuild --print-errorlogs --num-processes 2 2>&1 | tee "$log" | grep --line-buffered -E '^ *[0-9]+/[0-9]+ '
     number() { sed -nE "s/^($1): +([0-9]+) *$/\2/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
     bad=$(number 'Fail|Timeout|Unexpected Pass')
     grep -q '^Ok:' "$log" || bad=1
