@@ -107,8 +107,8 @@ typedef struct {
     ushort32 even, odd; /* columns */
 } Columns;
 
-/* Of the samples from one before a block's first on, the nearest to a column and the one that weighs 1 beside its 2; the
- * block begins `phase` columns after its first sample does. */
+/* Of the samples from one before a block's first on, the nearest to a column and the one that weighs 1 beside its 2;
+ * the block begins PHASE columns after its first sample does. */
 #define NEAR(column) (1 + (column) / 3)
 #define FAR_OR_NEAR(column) ((column) / 3 + (column) % 3)
 #define EVEN_NEAR(i) NEAR(PHASE + 2 * (i))
@@ -181,7 +181,7 @@ inline void coarse_gradient(const ushort *sums, Tile tile, ushort *gradient, int
     }
 }
 
-/* The two coarse rows that a fine row lies between, spread to the columns of a block, and the samples of the next one. */
+/* The two coarse rows that a fine row lies between, spread to the columns of a block; and the samples of the next. */
 typedef struct {
     float16 above[4], below[4];
     const ushort *next;
@@ -212,7 +212,7 @@ inline Between first_coarse_rows(const ushort *gradient, int block, int level)
 /* The fine row, counted from a coarse row's first, from which on the coarse rows below lie nearer to the next one. */
 #define LOWER_HALF(level) (((level) + 1) / 2)
 
-/* Column i % 4 = i of the spread gradient in the fine row `phase` of a coarse row. */
+/* The spread gradient in the columns x % 4 = i of the fine row `phase` of a coarse row. */
 inline float16 upsample(const Between *rows, int i, int phase, int level)
 {
     const float far = FAR(level, phase), near = UNITS(level) - far;

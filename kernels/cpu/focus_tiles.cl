@@ -7,8 +7,9 @@
  *
  * Columns are taken 64 at a time, even ones in one vector of 16-bit integers and odd ones in another; their halves, as
  * floats, hold every fourth column. That is how wide loads part bytes, pairs add up and coarse samples spread without a
- * shuffle. Such a block is measured from its first row to its last, between coarse gradients in registers. What is kept between planes lies block by block, [block][row][column % 4][column / 4], so
- * that walking down a block is walking through memory.
+ * shuffle. Such a block is measured from its first row to its last, between coarse gradients in registers. What is kept
+ * between planes lies block by block, [block][row][column % 4][column / 4], so that walking down a block is walking
+ * through memory.
  *
  * What differs from the formula:
  *  - the gradient's magnitude is max(m, 7/8 m + n/2) with m >= n the absolute derivatives: 3 % low to 0.8 % high;
@@ -51,26 +52,24 @@ inline float16 product_of_levels(float16 gradient, const Between *coarse, int i,
 /* The lowest bits of the best product so far hold LAST_PLANE - z. */
 #define LAST_PLANE 63
 
-/* Takes a product of plane z into the best one and the sum over the planes, for 16 pixels. */
-inline void take(float16 product, int z, int *best, float *sum)
+/* What is kept between planes of 64 pixels in a row, [column % 4][column / 4]. */
+typedef struct {
+    int16 best[4];
+    float16 sum[4]; /* of the products */
+} Kept;
+
+/* Takes the products of 16 pixels in plane z to what was kept before. */
+inline void take(float16 product, int z, const Kept *before, Kept *kept, int i)
 {
     const int16 candidate = (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z);
-    *(int16 *)best = max(*(int16 *)best, candidate);
-    *(float16 *)sum += product;
+    kept->best[i] = max(before->best[i], candidate);
+    kept->sum[i] = before->sum[i] + product;
 }
 
-inline void clear_block(int *best, float *sum)
-{
-    for (int i = 0; i < BLOCK_PIXELS; i += 16) {
-        *(int16 *)(best + i) = 0;
-        *(float16 *)(sum + i) = 0.0f;
-    }
-}
-
-/* Takes 64 columns of a tile in plane z into the best product and the sum over the planes; `row` is the one above them,
- * `gradients` those of the tile's coarse pictures. */
-inline void measure_block(const uchar *row, const ushort *gradients, int rows, int block, int z, Ahead ahead, int *best,
-                          float *sum)
+/* Takes 64 columns of a tile in plane z to what was kept `before`, whose next row is `step` farther. `row` is the one
+ * above them, `gradients` are those of the tile's coarse pictures. */
+inline void measure_block(const uchar *row, const ushort *gradients, int rows, int block, int z, Ahead ahead,
+                          const Kept *before, int step, Kept *kept)
 {
     Between coarse[LEVELS];
     __attribute__((opencl_unroll_hint))
@@ -93,10 +92,10 @@ inline void measure_block(const uchar *row, const ushort *gradients, int rows, i
                                         odd_lanes(fine.odd)};
             __attribute__((opencl_unroll_hint))
             for (int i = 0; i < 4; i++)
-                take(product_of_levels(columns[i], coarse, i, phase), z, best + 16 * i, sum + 16 * i);
+                take(product_of_levels(columns[i], coarse, i, phase), z, before, kept, i);
             row += STRIDE;
-            best += BLOCK;
-            sum += BLOCK;
+            before += step;
+            kept++;
         }
     }
 }
@@ -136,7 +135,7 @@ inline void store_pairs(uint16 first, uint16 second, __global ushort *out)
 
 /* Writes 64 pixels, of which `columns` lie in the picture, and returns the sum of their means. `unit` is what one of
  * the integer product is worth; without confidence its pointer is 0. */
-inline float16 store_pixels(const int *best, const float *sum, int columns, float unit, int planes, float tolerance,
+inline float16 store_pixels(const Kept *kept, int columns, float unit, int planes, float tolerance,
                             __global ushort *peak, __global uchar *peak_plane, __global uchar *confidence)
 {
     uint16 peaks[4];
@@ -145,9 +144,9 @@ inline float16 store_pixels(const int *best, const float *sum, int columns, floa
     __attribute__((opencl_unroll_hint))
     for (int i = 0; i < 4; i++) {
         const int16 inside = 4 * LANE + i < columns;
-        const int16 bits = *(const int16 *)(best + 16 * i);
+        const int16 bits = kept->best[i];
         const float16 p = as_float16(bits & ~LAST_PLANE & inside) * unit;
-        const float16 mean = as_float16(*(const int16 *)(sum + 16 * i) & inside) * (unit / planes);
+        const float16 mean = as_float16(as_int16(kept->sum[i]) & inside) * (unit / planes);
         peaks[i] = as_uint16(p);
         found |= select((int16)UNKNOWN_PLANE, LAST_PLANE - (bits & LAST_PLANE), p >= tolerance * mean) << 8 * i;
         total += mean;
@@ -173,8 +172,8 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     SCRATCH uchar luma[(TILE_HEIGHT + 2 * MARGIN_Y) * STRIDE];
     SCRATCH ushort sums[COARSE_ROWS * COARSE_STRIDE + 64];
     SCRATCH ushort gradients[(LEVELS > 1 ? LEVELS - 1 : 1) * GRADIENT_LEVEL];
-    SCRATCH int best[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
-    SCRATCH float sum[TILE_WIDTH / BLOCK * BLOCK_PIXELS];
+    Kept kept[TILE_WIDTH / BLOCK * TILE_HEIGHT];
+    const Kept nothing = {{0, 0, 0, 0}, {0, 0, 0, 0}};
 
     Tile tile;
     tile.x = (int)get_group_id(0) * TILE_WIDTH;
@@ -192,12 +191,9 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
         }
         const Ahead ahead = tile_ahead(stack, table, tile, z, planes, width);
         for (int block = 0; block * BLOCK < tile.columns; block++) {
-            int *block_best = best + block * BLOCK_PIXELS;
-            float *block_sum = sum + block * BLOCK_PIXELS;
-            if (z == 0)
-                clear_block(block_best, block_sum);
+            Kept *of_block = kept + block * TILE_HEIGHT;
             measure_block(luma + (MARGIN_Y - 1) * STRIDE + ORIGIN + block * BLOCK, gradients, tile.whole_rows, block, z,
-                          ahead, block_best, block_sum);
+                          ahead, z > 0 ? of_block : &nothing, z > 0, of_block);
         }
     }
     tile_statistics(stack, table, tile, mean_luma, moved, width, planes, threshold_bits);
@@ -209,11 +205,10 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
     float16 total = 0.0f;
     for (int y = 0; y < tile.rows; y++)
         for (int x = 0; x < tile.columns; x += BLOCK) {
-            const int from = x / BLOCK * BLOCK_PIXELS + y * BLOCK;
             const ulong entry = (ulong)(tile.y + y) * stride + tile.x + x;
             const ulong pixel = (ulong)(tile.y + y) * width + tile.x + x;
-            total += store_pixels(best + from, sum + from, tile.columns - x, unit, planes, tolerance, peak + entry,
-                                  peak_plane + entry, with_confidence ? confidence + pixel : 0);
+            total += store_pixels(kept + x / BLOCK * TILE_HEIGHT + y, tile.columns - x, unit, planes, tolerance,
+                                  peak + entry, peak_plane + entry, with_confidence ? confidence + pixel : 0);
         }
     tile_sums[get_group_id(1) * get_num_groups(0) + get_group_id(0)] = sum_of_lanes(total);
 }

@@ -13,7 +13,6 @@
 #define STRIDE (ORIGIN + TILE_WIDTH + 2 * BLOCK)
 #define COARSE_STRIDE (TILE_WIDTH / 2 + 32)
 #define COARSE_ROWS (TILE_HEIGHT / 2 + 4)
-#define BLOCK_PIXELS (BLOCK * TILE_HEIGHT)
 #define GRADIENT_LEVEL (COARSE_ROWS * COARSE_STRIDE) /* samples */
 
 /* For vectors to be read and written at their own alignment: a load across two cache lines costs as much as two. */
