@@ -3,46 +3,74 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 #
 # oclgrind.sh [BUILD]: runs the engine's kernels, at small sizes, in a simulator that sees reads and writes outside of
-# buffers and data races: the variants for CPUs and for GPUs of method=paper and of the all-in-focus picture, and
-# method=volume; and what light fields are made with. To be run by hand (apt install oclgrind); takes some minutes.
+# buffers and data races, and holds what they compute there to their twins: the variants for CPUs and for GPUs of
+# method=paper and of the all-in-focus picture, and method=volume; and what light fields are made with. To be run by
+# hand (apt install oclgrind); takes some minutes.
+#
+# Two faults of the simulator (21.10) are gone around:
+#  - Optimised code widens a comparison of vectors without a sign, and the simulator then takes its "true" for 255, or
+#    for -1 in bytes: `int16 n = 0; n -= a > 3;` gives 255 a lane. So nothing is optimised.
+#  - max() and min() of a vector of integers and a scalar, which OpenCL has, read what lies behind the scalar:
+#    `max(v, 1)`. So kernels write max(v, (int16)1).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build}
 command -v oclgrind >/dev/null || { echo "oclgrind.sh: oclgrind is not installed (apt install oclgrind)" >&2; exit 2; }
-cache=$(mktemp -d)
-trap 'rm -rf "$cache"' EXIT
-export XDG_CACHE_HOME=$cache
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+export XDG_CACHE_HOME=$folder
+touch "$folder/failed"
 
-failed=0
-check() { # NAME TEST FILTER
-    local log=$cache/log status=0
-    # Functions that return structures stay calls: inlined, they have intrinsics that the simulator does not know.
-    timeout 900 oclgrind --data-races --max-errors 20 --build-options "-DINLINE=inline -DPREFETCH(address)=" "$build/tests/unit/engine/$2" --gtest_filter="$3" \
-        >"$log" 2>&1 || status=$?
-    # A test that fails (1) is reported but forgiven: the simulator's mathematics are not the device's.
+options="-cl-opt-disable -include $PWD/tests/oclgrind.h"
+
+run() { # NAME TEST FILTER
+    local log status=0 finding='' start=$SECONDS
+    log=$(mktemp -p "$folder")
+    timeout 900 oclgrind --data-races --max-errors 20 --build-options "$options" "$build/tests/unit/engine/$2" \
+        --gtest_filter="$3" >"$log" 2>&1 || status=$?
     if grep -q 'OCLGRIND FATAL ERROR' "$log"; then
-        echo "FAIL $1: the simulator gave up: $(grep -A 2 'FATAL ERROR' "$log" | tail -2 | tr '\n' ' ')"
-        failed=$((failed + 1))
-    elif [ $status -gt 1 ] || grep -qE '^(Invalid|Read-write|Write-write)' "$log" ||
-            ! grep -q ' ran\.' "$log"; then
-        echo "FAIL $1 (status $status)"
-        grep -E '^(Invalid|Read-write|Write-write)' -A 12 "$log" | head -40
-        failed=$((failed + 1))
-    elif [ $status = 1 ]; then
-        echo "ok   $1 (clean, though its results differ from the device's)"
+        finding='the simulator gave up'
+    elif grep -qE '^(Invalid|Read-write|Write-write)' "$log"; then
+        finding='memory or races'
+    elif [ $status != 0 ]; then
+        finding="status $status"
+    elif ! grep -qE '\[  PASSED  \] [1-9]' "$log"; then
+        finding='no test has run'
+    fi
+    if [ -z "$finding" ]; then
+        echo "ok   $1 ($((SECONDS - start)) s)"
     else
-        echo "ok   $1"
+        echo "FAIL $1: $finding"
+        grep -E '^(Invalid|Read-write|Write-write)|FATAL|Failure' -A 12 "$log" | head -40
+        echo "$1" >>"$folder/failed"
     fi
 }
-check "paper and picture for CPUs, every format" test_memory '*nothing_outside*'
+
+check() { # the same, one a processor at a time
+    while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do
+        wait -n
+    done
+    run "$@" &
+}
+
+check "paper, volume and picture, planes" test_memory '*nothing_outside*/2'
+check "luma and reference, every format" test_luma '*'
 check "paper for CPUs, four levels, odd size" test_cpu_kernels '*FocusTilesShapes*/3:*FocusTilesShapes*/8'
-check "paper for CPUs, statistics and solver" test_cpu_kernels '*statistics*:*a_grid_works_again*'
+check "paper for CPUs, statistics" test_cpu_kernels '*statistics*'
+check "paper for CPUs, solver and slice" test_cpu_kernels '*LumaGridParameters*/1:*a_grid_works_again*'
+check "paper for CPUs, both starts of the solver" test_solver_start '*little*:*another*'
 check "focus measure for GPUs" test_focus_measure '*/0:*/4'
-check "sparse depth, entropy and Gaussian for GPUs" test_sparse_depth '*'
+check "sparse depth, entropy and Gaussian for GPUs" test_sparse_depth 'SparseDepth.agrees*:GaussianBlur*'
 check "solver for GPUs" test_bilateral_grid '*the_same_engine*'
-check "picture for GPUs and CPUs" test_aif '*AifFormats*'
+check "picture for GPUs, 16 bits, planes, colours" test_aif '*AifFormats*/9:*AifFormats*/17:*AifFormats*/21:*AifFormats*/49'
+check "picture for CPUs, planes, colours, with holes" test_aif '*AifFormats*/2:*AifFormats*/23:*AifFormats*/27:*AifFormats*/35'
 check "sharp picture" test_aif '*SharpFormats*/0:*SharpFormats*/2'
-check "volume" test_volume_method '*VolumeShapes*/0:*VolumeShapes*/3:*VolumeShapes*/7'
-check "light-field views, panels and colour beside depth" ../lightfield/test_light_field_renderer '*left_over*:*both_kinds*:*rgbd*'
-echo "$failed failed"
-[ "$failed" = 0 ]
+check "volume at half resolution, 16 bits" test_volume_stages '*/3'
+check "volume at a quarter, planes" test_volume_stages '*/4'
+check "volume at an eighth" test_volume_stages '*/6'
+check "volume as a whole, colours" test_volume_method '*VolumeShapes*/7'
+check "light-field views, panels and colour beside depth" ../lightfield/test_light_field_renderer \
+    '*left_over*:*both_kinds*:*rgbd*:*elemental*'
+wait
+echo "$(wc -l <"$folder/failed") failed"
+[ ! -s "$folder/failed" ]

@@ -213,7 +213,7 @@ INLINE ushort16 chroma_positions(const ushort *above, int unknown)
     add_known(as_uint16(a) >> 16, &sum, &known);
     add_known(as_uint16(b) & 65535u, &sum, &known);
     add_known(as_uint16(b) >> 16, &sum, &known);
-    const float16 mean = convert_float16(sum) / convert_float16(max(-known, 1)) + 0.5f;
+    const float16 mean = convert_float16(sum) / convert_float16(max(-known, (int16)1)) + 0.5f;
     return convert_ushort16(known == 0 ? (uint16)NO_POSITION : convert_uint16(mean));
 }
 
