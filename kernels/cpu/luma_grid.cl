@@ -17,6 +17,7 @@
  * step are taken together (Chronopoulos and Gear 1989), which leaves two kernels a step.
  */
 #include "lanes32.cl"
+#include "grid_area.cl"
 
 #define CENTRE_WEIGHT 10.0f
 #define EPSILON 1e-6f
@@ -24,23 +25,23 @@
 typedef __global float *Cells;
 typedef __global const float *ConstCells;
 
-inline float16 at(ConstCells v, int i)
+INLINE float16 at(ConstCells v, int i)
 {
     return *(__global const flanes *)(v + i);
 }
 
-inline void put(Cells v, int i, float16 value)
+INLINE void put(Cells v, int i, float16 value)
 {
     *(__global flanes *)(v + i) = value;
 }
 
-inline float16 neighbours(ConstCells v, int i)
+INLINE float16 neighbours(ConstCells v, int i)
 {
     return at(v, i - 1) + at(v, i + 1) + at(v, i - COLUMN) + at(v, i + COLUMN) + at(v, i - ROW) + at(v, i + ROW);
 }
 
 /* (A' x)_i */
-inline float16 system_at(ConstCells e, ConstCells x, int i)
+INLINE float16 system_at(ConstCells e, ConstCells x, int i)
 {
     const float16 sum = at(e, i - 1) * at(x, i - 1) + at(e, i + 1) * at(x, i + 1) +
                         at(e, i - COLUMN) * at(x, i - COLUMN) + at(e, i + COLUMN) * at(x, i + COLUMN) +
@@ -48,7 +49,7 @@ inline float16 system_at(ConstCells e, ConstCells x, int i)
     return at(x, i) - at(e, i) * sum;
 }
 
-inline float sum_of_lanes(float16 v)
+INLINE float sum_of_lanes(float16 v)
 {
     const float8 a = v.lo + v.hi;
     const float4 b = a.lo + a.hi;
@@ -56,133 +57,81 @@ inline float sum_of_lanes(float16 v)
     return c.lo + c.hi;
 }
 
-/* Sum over the grid of what each row gives. */
-inline float2 sum_of_rows(__global const float2 *row_sums)
+/* Sum over the grid of what each row gives; behind the rows stands 0 up to a whole vector. */
+INLINE float2 sum_of_rows(__global const float2 *row_sums)
 {
-    float2 sum = 0.0f;
-    for (int i = 0; i < ROWS; i++)
-        sum += row_sums[i];
-    return sum;
+    float16 sums = 0.0f;
+    for (int i = 0; i < ROWS; i += 8)
+        sums += *(__global const flanes *)(row_sums + i);
+    const float8 a = sums.lo + sums.hi;
+    const float4 b = a.lo + a.hi;
+    return b.lo + b.hi;
+}
+
+INLINE float sum_of_norms(__global const float *row_norms)
+{
+    float16 sums = 0.0f;
+    for (int i = 0; i < ROWS; i += 16)
+        sums += at(row_norms, i);
+    return sum_of_lanes(sums);
 }
 
 /* First cell of the work-item's row. */
-inline int first_cell(void)
+INLINE int first_cell(void)
 {
     return ((int)get_group_id(0) + 1) * ROW;
 }
 
-/* The part of the picture under a column of the grid, in strips 16 pixels wide: steps of luma, and planes. What fills
- * the last vector counts nowhere. */
-#define STRIPS ((SIGMA_XY + 15) / 16)
-#define STRIP_VECTORS ((SIGMA_XY + 3) / 4)
-#define AHEAD 256   /* columns asked for ahead */
-#define OUTSIDE 255 /* not a step of luma, whose least size is 4 */
-typedef struct {
-    uchar64 steps[STRIPS][STRIP_VECTORS], planes[STRIPS][STRIP_VECTORS];
-    int first, last; /* steps among them */
-} Area;
-
-inline uchar lowest(uchar16 v)
-{
-    const uchar8 a = min(v.lo, v.hi);
-    const uchar4 b = min(a.lo, a.hi);
-    const uchar2 c = min(b.lo, b.hi);
-    return min(c.lo, c.hi);
-}
-
-inline void load_area(__global const uchar *sparse, __global const uchar *luma, int left, int top, int width,
-                      int height, Area *area)
-{
-    const int right = min(left + SIGMA_XY, width), bottom = min(top + SIGMA_XY, height);
-    uchar16 least = OUTSIDE, most = 0;
-    for (int i = 0; i < STRIPS * STRIP_VECTORS; i++)
-        area->steps[0][i] = OUTSIDE;
-    for (int x = left; x < right; x += 16) {
-        uchar *steps = (uchar *)area->steps[(x - left) / 16], *planes = (uchar *)area->planes[(x - left) / 16];
-        const int first = min(x, width - 16); /* at the right border the lanes before come along */
-        const char16 column = convert_char16(LANE) + (char)(first - x);
-        const uchar16 outside = as_uchar16(column < (char)0 || column >= (char)min(right - x, 16));
-        for (int y = top; y < bottom; y++, steps += 16, planes += 16) {
-            const ulong pixel = (ulong)y * width + first;
-            PREFETCH(luma + pixel + AHEAD);
-            PREFETCH(sparse + pixel + AHEAD);
-            const ushort16 pixels = convert_ushort16(*(__global const lanes8 *)(luma + pixel));
-            const uchar16 step = convert_uchar16(pixels / (ushort)SIGMA_LUMA);
-            *(lanes8 *)steps = step | outside;
-            *(lanes8 *)planes = *(__global const lanes8 *)(sparse + pixel);
-            least = min(least, step | outside);
-            most = max(most, step & ~outside);
-        }
-    }
-    area->first = lowest(least);
-    area->last = 255 - lowest(~most);
-}
-
-inline float sum_of_shorts(ushort32 v)
-{
-    const uint16 a = (as_uint16(v) & 65535u) + (as_uint16(v) >> 16);
-    const uint8 b = a.lo + a.hi;
-    const uint4 c = b.lo + b.hi;
-    const uint2 d = c.lo + c.hi;
-    return (float)(d.lo + d.hi);
-}
-
-inline ushort32 sum_bytes(uchar64 v)
-{
-    return even_bytes(as_ushort32(v)) + odd_bytes(as_ushort32(v));
-}
-
-/* Pixels of an area in a step of luma, known ones, and the sum of their planes. */
-inline float3 count_step(const Area *area, uchar step)
-{
-    float3 sums = 0.0f;
-    for (int strip = 0; strip < STRIPS; strip++) {
-        ushort32 pixels = 0, known = 0, planes = 0;
-        for (int i = 0; i < STRIP_VECTORS; i++) {
-            const uchar64 plane = area->planes[strip][i];
-            const uchar64 counts = __builtin_astype(area->steps[strip][i] == step, uchar64);
-            const uchar64 tells = counts & __builtin_astype(plane != (uchar)UNKNOWN_PLANE, uchar64);
-            pixels += sum_bytes(counts & (uchar)1);
-            known += sum_bytes(tells & (uchar)1);
-            planes += sum_bytes(tells & plane);
-        }
-        sums += (float3)(sum_of_shorts(pixels), sum_of_shorts(known), sum_of_shorts(planes));
-    }
-    return sums;
-}
-
-/* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any.
+/* mass: pixels a cell holds; weight, target: known ones, sum of their planes; n: 1 where there are any. The last lanes
+ * of a column may be the next one's, which writes them later, or padding.
  * row_sums: (target, weight) of the row. */
 __kernel void splat_rows(__global const uchar *sparse, __global const uchar *luma, Cells mass, Cells weight,
                          Cells target, Cells n, __global float2 *row_sums, int width, int height)
 {
     const int top = (int)get_group_id(0) * SIGMA_XY;
-    float2 sums = 0.0f;
+    uint16 targets = 0, weights = 0;
     int cell = first_cell() + COLUMN + 1;
     for (int left = 0; left < width; left += SIGMA_XY, cell += COLUMN) {
         Area area;
         load_area(sparse, luma, left, top, width, height, &area);
-        for (int step = 0; step < COLUMN - 1; step++) {
-            float3 count = 0.0f;
-            if (step >= area.first && step <= area.last)
-                count = count_step(&area, (uchar)step);
-            mass[cell + step] = count.x;
-            weight[cell + step] = count.y;
-            target[cell + step] = count.z;
-            n[cell + step] = count.x > 0.0f ? 1.0f : 0.0f;
-            sums += count.zy;
+        for (int step = 0; step < COLUMN - 1; step += 16) {
+            uint16 pixels = 0, known = 0, planes = 0;
+            for (int i = max(area.first, step); i <= min(area.last, step + 15); i++) {
+                const uint3 count = count_step(&area, (uchar)i);
+                const int16 here = LANE == i - step;
+                pixels = here ? (uint16)count.x : pixels;
+                known = here ? (uint16)count.y : known;
+                planes = here ? (uint16)count.z : planes;
+            }
+            put(mass, cell + step, convert_float16(pixels));
+            put(weight, cell + step, convert_float16(known));
+            put(target, cell + step, convert_float16(planes));
+            put(n, cell + step, pixels > 0u ? (float16)1.0f : (float16)0.0f);
+            weights += known;
+            targets += planes;
         }
     }
-    row_sums[get_group_id(0)] = sums;
+    row_sums[get_group_id(0)] =
+        (float2)(sum_of_lanes(convert_float16(targets)), sum_of_lanes(convert_float16(weights)));
 }
 
-/* One step of bistochastisation, n -> next. */
+/* 1 / sqrt(v) of v > 0 by three of Newton's steps, a third of what a root and a division take. */
+INLINE float16 inverse_root(float16 v)
+{
+    float16 root = as_float16(0x5f3759df - (as_int16(v) >> 1));
+    __attribute__((opencl_unroll_hint))
+    for (int i = 0; i < 3; i++)
+        root *= 1.5f - 0.5f * v * root * root;
+    return root;
+}
+
+/* One step of bistochastisation, n -> next = sqrt(n mass / (blurred n)). */
 __kernel void normalise_rows(ConstCells mass, ConstCells n, Cells next)
 {
     for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
         const float16 m = at(mass, i), here = at(n, i);
-        const float16 blurred = CENTRE_WEIGHT * here + neighbours(n, i);
-        put(next, i, m > 0.0f ? sqrt(here * m / blurred) : 0.0f);
+        const float16 blurred = CENTRE_WEIGHT * here + neighbours(n, i), product = here * m;
+        put(next, i, m > 0.0f ? product * inverse_root(product * blurred) : 0.0f);
     }
 }
 
@@ -196,7 +145,7 @@ __kernel void scale_rows(ConstCells n, ConstCells weight, ConstCells target, __g
     for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
         const float16 here = at(n, i);
         const int16 occupied = here > 0.0f;
-        const float16 scale = 1.0f / sqrt(lambda * here * neighbours(n, i) + at(weight, i) + EPSILON);
+        const float16 scale = inverse_root(lambda * here * neighbours(n, i) + at(weight, i) + EPSILON);
         const float16 r = occupied ? (at(target, i) + EPSILON * mean_target) * scale : 0.0f;
         put(e, i, sqrt(lambda) * here * scale);
         put(d, i, occupied ? scale : 0.0f);
@@ -210,16 +159,22 @@ __kernel void scale_rows(ConstCells n, ConstCells weight, ConstCells target, __g
 #define KEEP_XY 0.6f
 #define KEEP_LUMA 0.4f
 
-inline void spread_cells(ConstCells from, Cells to, int first)
+INLINE void spread_cells(ConstCells from, Cells to, int first)
 {
-    for (int i = first; i < first + ROW; i += 16)
-        put(to, i, at(from, i) + KEEP_LUMA * (at(from, i - 1) + at(from, i + 1)));
-    for (int column = 2; column <= COLUMNS; column++)
-        for (int i = first + column * COLUMN; i < first + (column + 1) * COLUMN; i++)
-            to[i] += KEEP_XY * to[i - COLUMN];
-    for (int column = COLUMNS - 1; column >= 1; column--)
-        for (int i = first + column * COLUMN; i < first + (column + 1) * COLUMN; i++)
-            to[i] += KEEP_XY * to[i + COLUMN];
+    for (int step = 0; step < COLUMN - 1; step += 16) {
+        const int16 inside = LANE < COLUMN - 1 - step; /* the others are the next column's */
+        float16 kept = 0.0f;
+        for (int column = 1; column <= COLUMNS; column++) {
+            const int i = first + column * COLUMN + 1 + step;
+            kept = at(from, i) + KEEP_LUMA * (at(from, i - 1) + at(from, i + 1)) + KEEP_XY * kept;
+            put(to, i, inside ? kept : at(to, i));
+        }
+        for (int column = COLUMNS - 1; column >= 1; column--) {
+            const int i = first + column * COLUMN + 1 + step;
+            kept = at(to, i) + KEEP_XY * kept;
+            put(to, i, inside ? kept : at(to, i));
+        }
+    }
 }
 
 __kernel void spread_rows(ConstCells target, ConstCells weight, Cells spread_target, Cells spread_weight)
@@ -318,10 +273,8 @@ __kernel void advance_rows(__global const float2 *row_dots, __global const float
 {
     const Step before = steps[step];
     Step now = before;
-    float norm = 0.0f;
-    for (int i = 0; i < ROWS; i++)
-        norm += row_norms[i];
     if (!before.done) {
+        const float norm = sum_of_norms(row_norms);
         const float2 dots = sum_of_rows(row_dots);
         const float beta = step ? dots.x / before.squared_residual : 0.0f;
         const float curvature = dots.y - (step ? beta * dots.x / before.alpha : 0.0f);
@@ -348,9 +301,7 @@ __kernel void finish_rows(ConstCells x, ConstCells d, __global const float2 *row
                           __global float *relative_residual)
 {
     if (get_group_id(0) == 0) {
-        float norm = 0.0f;
-        for (int i = 0; i < ROWS; i++)
-            norm += row_norms[i];
+        const float norm = sum_of_norms(row_norms);
         *relative_residual = norm > 0.0f ? sqrt(last[step].squared_residual / norm) : 0.0f;
     }
     const float16 known = sum_of_rows(row_sums).y > 0.0f ? 0.0f : NAN;

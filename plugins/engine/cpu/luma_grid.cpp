@@ -4,6 +4,7 @@
 
 #include "engine/engine_error.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace dff {
@@ -32,7 +33,7 @@ LumaGrid::LumaGrid(CommandQueue &queue, uint32_t width, uint32_t height,
     : queue_(queue), width_(width), height_(height), parameters_(parameters),
       columns_(parts_of(width, parameters.sigma_xy)), rows_(parts_of(height, parameters.sigma_xy)),
       column_cells_(parts_of(256, parameters.sigma_luma) + 1),
-      row_cells_(parts_of((columns_ + 2) * column_cells_, lanes) * lanes)
+      row_cells_(parts_of((columns_ + 1) * column_cells_ + std::max(column_cells_, lanes), lanes) * lanes)
 {
     const size_t cells = (rows_ + 2) * row_cells_;
     if (cells > std::numeric_limits<cl_int>::max() ||
@@ -68,7 +69,7 @@ void LumaGrid::build_kernels()
     finish_ = program.kernel("finish_rows");
 }
 
-/* The border cells, which no kernel writes, must be 0. */
+/* The border cells and what fills the last vector of a sum, which no kernel writes, must be 0. */
 void LumaGrid::allocate()
 {
     const size_t bytes = (rows_ + 2) * row_cells_ * sizeof(cl_float);
@@ -78,9 +79,11 @@ void LumaGrid::allocate()
         *cells = queue_.allocate(bytes);
         queue_.commands().enqueueFillBuffer(*cells, cl_float{0}, 0, bytes);
     }
-    row_sums_ = queue_.allocate(rows_ * sizeof(cl_float2));
-    row_norms_ = queue_.allocate(rows_ * sizeof(cl_float));
-    row_dots_ = queue_.allocate(rows_ * sizeof(cl_float2));
+    const size_t sums_bytes = parts_of(rows_, lanes) * lanes * sizeof(cl_float2);
+    for (cl::Buffer *sums : {&row_sums_, &row_norms_, &row_dots_}) {
+        *sums = queue_.allocate(sums_bytes);
+        queue_.commands().enqueueFillBuffer(*sums, cl_float{0}, 0, sums_bytes);
+    }
     residual_norm_ = queue_.allocate(sizeof(cl_float));
     steps_ = queue_.allocate((parameters_.iterations + 1) * sizeof(Step));
     queue_.commands().enqueueFillBuffer(steps_, cl_uchar{0}, 0, (parameters_.iterations + 1) * sizeof(Step));
