@@ -97,7 +97,7 @@ void LineTriggers::check_lens()
     const std::lock_guard lens_lock(lens_mutex_);
     if (!started_)
         return;
-    take_count();
+    take_count(witnesses_.rhythm.get());
     const std::int64_t now_ns = host_now_ns();
     if (now_ns < next_check_ns_)
         return;
@@ -121,12 +121,12 @@ std::optional<CountReading> LineTriggers::read_count()
 }
 
 /* The lens is locked. */
-void LineTriggers::take_count()
+void LineTriggers::take_count(const TriggerTimes *triggers)
 {
     const auto reading = read_count();
     const std::lock_guard lock(mutex_);
     if (reading)
-        witnesses_.count->read(*reading, witnesses_.rhythm.get());
+        witnesses_.count->read(*reading, triggers);
     else
         witnesses_.count->withdraw();
 }
@@ -160,7 +160,7 @@ void LineTriggers::stop() noexcept
         if (parts_.lens)
             parts_.lens->stop();
         if (parts_.lens && started_)
-            take_count();
+            take_count(nullptr); /* it rests, and the edges do not know */
     } catch (...) {
         fail();
     }

@@ -57,7 +57,7 @@ private:
     void check_lens();
     void wait_for_reading(const std::stop_token &stop);
     std::optional<CountReading> read_count();
-    void take_count();
+    void take_count(const TriggerTimes *triggers);
 
     SweepTiming timing_;
     Parts parts_;

@@ -39,6 +39,36 @@ std::ptrdiff_t place(const std::vector<std::string> &log, const std::string &lin
     return std::find(log.begin(), log.end(), line) - log.begin();
 }
 
+/* The source with that sequencer, so slow that this machine's threads are in time. */
+std::string counted_source()
+{
+    return "lenssweepsrc name=source camera=Fake_1 trigger=line sync-line=SYNC lens=fpga:" + rig::i2c_bus() +
+           " planes=6 rate=3 ! fakesink";
+}
+
+/* What the sequencer says of itself. */
+void set_frame_count(uint16_t count)
+{
+    dff::LinuxI2cBus bus(rig::i2c_bus(), 0x3c);
+    bus.write_word(static_cast<uint8_t>(Word::frame_count_low), count);
+}
+
+/* That it was started, and the count at rest read. */
+bool sweeps()
+{
+    return comes_true([] {
+        const auto log = rig::i2c_log();
+        return place(log, "3c 02=0001") < static_cast<std::ptrdiff_t>(log.size());
+    });
+}
+
+void pulse_sync_line()
+{
+    rig::pull(rig::sync_line, true);
+    std::this_thread::sleep_for(10ms);
+    rig::pull(rig::sync_line, false);
+}
+
 } // namespace
 
 TEST(Source, loads_the_sequencer_then_raises_its_run_line_and_lowers_it_at_the_end)
@@ -67,15 +97,47 @@ TEST(Source, loads_the_sequencer_then_raises_its_run_line_and_lowers_it_at_the_e
 
     bus.write_word(static_cast<uint8_t>(Word::frame_count_low), 12);
     for (int edge = 0; edge < 3; ++edge) {
-        rig::pull(rig::sync_line, true);
-        std::this_thread::sleep_for(10ms);
-        rig::pull(rig::sync_line, false);
+        pulse_sync_line();
     }
     pipeline.set_state(GST_STATE_NULL);
     EXPECT_EQ(statistic(pipeline.element("source"), "triggers"), 12U);
     EXPECT_FALSE(rig::level(rig::run_line));
     EXPECT_EQ(rig::i2c_log().back(), "3c 02=0000");
     bus.write_word(static_cast<uint8_t>(Word::frame_count_low), 0);
+}
+
+TEST(Source, holds_the_count_of_triggers_against_the_sync_line)
+{
+    for (const uint16_t count : {1, 6}) { /* the last trigger was of plane 0, as the edge says; of plane 5 */
+        rig::empty_i2c_log();
+        Pipeline pipeline(counted_source());
+        pipeline.set_state(GST_STATE_PLAYING);
+        ASSERT_TRUE(sweeps());
+        set_frame_count(count);
+        pulse_sync_line();
+        const auto triggers = [&] { return statistic(pipeline.element("source"), "triggers"); };
+        EXPECT_TRUE(comes_true([&] { return triggers() == count; }));
+        pipeline.set_state(GST_STATE_NULL);
+        EXPECT_EQ(statistic(pipeline.element("source"), "wrong-counts"), count == 1 ? 0U : 1U);
+        set_frame_count(0);
+    }
+}
+
+TEST(Source, a_count_that_cannot_be_read_is_a_warning)
+{
+    rig::empty_i2c_log();
+    Pipeline pipeline(counted_source());
+    pipeline.set_state(GST_STATE_PLAYING);
+    ASSERT_TRUE(sweeps());
+    rig::fail_i2c_transfers(3);
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline.get());
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
+        bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));
+    ASSERT_NE(message, nullptr);
+    ASSERT_EQ(GST_MESSAGE_TYPE(message), GST_MESSAGE_WARNING);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_warning(message, &error, nullptr);
+    EXPECT_NE(std::string(error->message).find("count of triggers"), std::string::npos) << error->message;
 }
 
 TEST(Source, moves_the_lens_from_plane_to_plane)

@@ -209,9 +209,11 @@ TEST(LineTriggers, read_the_count_in_each_sweep_and_hold_it_against_the_edge)
     lens.count = 1;
     line.next_ns = dff::host_now_ns();
     ASSERT_TRUE(comes_true([&] { return triggers.given() == 1U; }));
+    lens.count = 3; /* when it has come to rest */
+    triggers.stop();
     EXPECT_EQ(triggers.wrong_counts(), 0U);
     triggers.start();
-    lens.count = 1 + 3; /* plane 2 */
+    lens.count = 3 + 3; /* plane 2 */
     line.next_ns = dff::host_now_ns();
     EXPECT_TRUE(comes_true([&] { return triggers.wrong_counts() == 1U; }));
     EXPECT_EQ(triggers.take_complaint(), "");
