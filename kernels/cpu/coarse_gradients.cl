@@ -100,9 +100,6 @@ inline void downsample(const uchar *luma, Tile tile, ushort *sums, int level)
 #define UNITS(level) ((level) % 2 ? (level) : 2 * (level))
 #define FAR(level, phase) (abs(2 * (phase) + 1 - (level)) >> ((level) % 2))
 
-/* Keeps UNITS times the coarse gradient within 16 bits. */
-#define GRADIENT_SHIFT(level) ((level) == 4 ? 5 : 1)
-
 typedef struct {
     ushort32 even, odd; /* columns */
 } Columns;
@@ -176,7 +173,7 @@ inline void coarse_gradient(const ushort *sums, Tile tile, ushort *gradient, int
             const short32 right = *(const slanes32 *)(row + 2);
             const ushort32 g = next_gradient(right - left, left + right + (centre << (short)1), &above);
             if (r >= 0)
-                *(ushort32 *)(gradient + r * COARSE_STRIDE + c) = g >> (ushort)GRADIENT_SHIFT(level);
+                *(ushort32 *)(gradient + r * COARSE_STRIDE + c) = g;
         }
     }
 }
