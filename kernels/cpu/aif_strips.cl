@@ -94,7 +94,7 @@ INLINE int nearest_rows(const Depth *depth, int top, int rows, ushort *nearest)
             here = below;
         }
     }
-    int unknown = __builtin_reduce_max(most) == NONE;
+    int unknown = most_of(most) == NONE;
     for (int y = 0; y < rows + 2; y++) {
         ushort *row = nearest + y * STRIDE;
         row[0] = lines[y + 1][0] - 1;
@@ -116,15 +116,15 @@ INLINE ushort32 third_of_mean(const ushort *row)
            part_of(*(const lanes32 *)(row + 1), ninth);
 }
 
-/* Positions of 32 depth pixels less 1. */
+/* Positions of 32 depth pixels less 1, all of which have a depth. */
 INLINE ushort32 positions_of_32(const Depth *depth, ushort32 pixels)
 {
     if (depth->scale > 0.0f) {
-        const ushort scale = (ushort)(depth->scale * 65536.0f + 0.5f), rounding = 32768 / scale;
-        return part_of(min32(pixels, (ushort)(65535 - rounding)) + rounding, scale);
+        const ushort32 scale = (ushort)(depth->scale * 65536.0f + 0.5f);
+        return part_of(pixels, scale) + (pixels * scale >> (ushort)15); /* the product's lower half rounds */
     }
     ushort lanes[32];
-    *(lanes32 *)lanes = min32(pixels, (ushort)65534) + (ushort)1;
+    *(lanes32 *)lanes = pixels + (ushort)1;
     for (int i = 0; i < 32; i++)
         lanes[i] = depth->positions[lanes[i]];
     return *(lanes32 *)lanes;
@@ -279,7 +279,7 @@ INLINE uchar32 linear_samples(const Source *source, int x, int y, ushort32 posit
     const int first = min(position[0] / UNIT, source->planes - 2);
     const ushort32 share = position - (ushort)(first * UNIT);
     ushort32 sum = UNIT / 2;
-    if (__builtin_reduce_or(share > (ushort)UNIT) == 0) {
+    if (!any_of(share > (ushort)UNIT)) {
         const ushort32 before = widen(*(__global const bytes32 *)samples_at(source, first, x, y));
         const ushort32 after = widen(*(__global const bytes32 *)samples_at(source, first + 1, x, y));
         PREFETCH(samples_at(source, first, x, y + 1));
@@ -287,7 +287,7 @@ INLINE uchar32 linear_samples(const Source *source, int x, int y, ushort32 posit
         sum += before * (ushort)UNIT + share * (after - before);
     } else {
         const int2 range =
-            planes_between(__builtin_reduce_min(position), __builtin_reduce_max(position), source->planes);
+            planes_between(least_of(position), most_of(position), source->planes);
         for (int z = range.x; z <= range.y; z++) {
             const short32 away = as_short32(position) - (short)(z * UNIT);
             const short32 weight = higher((short)UNIT - higher(away, -away), (short32)0);
@@ -331,8 +331,8 @@ INLINE uchar16 soft_samples(const Source *source, int x, int y, ushort16 positio
 INLINE uchar16 any_samples(const Source *source, int x, int y, ushort16 position, int soft)
 {
     const short16 none = position == (ushort16)NO_POSITION;
-    const int2 range = planes_between(__builtin_reduce_min(position),
-                                      __builtin_reduce_max(position & ~as_ushort16(none)), source->planes);
+    const int2 range = planes_between(least_of(position),
+                                      most_of(position & ~as_ushort16(none)), source->planes);
     uchar16 value;
     if (soft) {
         value = soft_samples(source, x, y, position, range.x, range.y);

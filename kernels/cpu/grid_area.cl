@@ -20,20 +20,6 @@ typedef struct {
 } Area;
 
 typedef ushort __attribute__((ext_vector_type(64))) ushort64;
-typedef uint __attribute__((ext_vector_type(64))) wide64;
-
-/* Compilers know it as few instructions, and of truth values as one count of bits. */
-INLINE uint sum_of_bytes(uchar64 v)
-{
-#if __has_builtin(__builtin_reduce_add)
-    return __builtin_reduce_add(__builtin_convertvector(v, wide64));
-#else
-    uint sum = 0;
-    for (int i = 0; i < 64; i++)
-        sum += v[i];
-    return sum;
-#endif
-}
 
 /* 255 where it is so. */
 INLINE uchar64 equal(uchar64 a, uchar64 b)
@@ -79,11 +65,12 @@ INLINE void load_area(__global const uchar *sparse, __global const uchar *luma, 
         least = area->steps[i] < least ? area->steps[i] : least;
         most = inside > most ? inside : most;
     }
-    area->first = __builtin_reduce_min(least);
-    area->last = __builtin_reduce_max(most);
+    area->first = least_of(least);
+    area->last = most_of(most);
 }
 
-/* Pixels of an area in a step of luma, known ones, and the sum of their planes. */
+/* Pixels of an area in a step of luma, known ones, and the sum of their planes. (Compilers count the bits of truth
+ * values.) */
 INLINE uint3 count_step(const Area *area, uchar step)
 {
     uint3 count = 0;

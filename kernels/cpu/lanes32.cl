@@ -80,6 +80,32 @@ INLINE ushort32 part_of(ushort32 a, ushort32 b)
 #endif
 }
 
+/* The least lane of a vector, the greatest one, whether any is not 0, and the sum of bytes. */
+#ifdef __SPIR__ /* a simulator, which knows none of the built-ins */
+#define REDUCTION(name, vector, scalar, lanes, operation)                                                              \
+    inline scalar __attribute__((overloadable)) name(vector v)                                                         \
+    {                                                                                                                  \
+        scalar all = v[0];                                                                                             \
+        for (int i = 1; i < lanes; i++)                                                                                \
+            all = operation;                                                                                           \
+        return all;                                                                                                    \
+    }
+REDUCTION(least_of, ushort16, ushort, 16, min(all, v[i]))
+REDUCTION(least_of, ushort32, ushort, 32, min(all, v[i]))
+REDUCTION(least_of, uchar64, uchar, 64, min(all, v[i]))
+REDUCTION(most_of, ushort16, ushort, 16, max(all, v[i]))
+REDUCTION(most_of, ushort32, ushort, 32, max(all, v[i]))
+REDUCTION(most_of, uchar64, uchar, 64, max(all, v[i]))
+REDUCTION(any_of, short32, int, 32, all | v[i])
+REDUCTION(sum_of_bytes, uchar64, uint, 64, all + v[i])
+#else
+typedef uint __attribute__((ext_vector_type(64))) wide64;
+#define least_of(v) __builtin_reduce_min(v)
+#define most_of(v) __builtin_reduce_max(v)
+#define any_of(v) (__builtin_reduce_or(v) != 0)
+#define sum_of_bytes(v) __builtin_reduce_add(__builtin_convertvector(v, wide64))
+#endif
+
 typedef ushort32 __attribute__((aligned(1))) byte_pairs; /* of 64 columns: even | odd << 8 */
 
 inline ushort32 even_bytes(ushort32 pairs)

@@ -29,7 +29,8 @@ INLINE ushort32 mean_of(ushort32 a, ushort32 b)
     return __builtin_convertvector((as_wide(a) + as_wide(b) + 1u) >> 1u, ushort32);
 }
 
-/* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. */
+/* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. The weights are 65536 together and each part
+ * is rounded down, so that nothing comes out above LAST. */
 INLINE ushort32 blur(const ushort *centre, int step, const ushort32 *taps)
 {
     ushort32 sum = part_of(*(const lanes32 *)centre, taps[0]) + (ushort)((RADIUS + 1) / 2);
@@ -127,7 +128,7 @@ __kernel void slice_depth(__global const float *solution, __global const uchar *
         for (int x = 0; x < MARGIN + right - left + RADIUS; x += 32)
             *(lanes32 *)(row + x) = blur(u + (y - top + RADIUS) * STRIDE + x, STRIDE, taps);
         for (int x = 0; x < right - left; x += 32) {
-            const ushort32 coded = is_known ? min32(blur(row + MARGIN + x, 1, taps), LAST) + (ushort)1 : (ushort32)0;
+            const ushort32 coded = is_known ? blur(row + MARGIN + x, 1, taps) + (ushort)1 : (ushort32)0;
             __global ushort *out = depth + (ulong)y * stride + left + x;
             const int inside = min(right - left - x, 32);
             if (linear && inside == 32)
