@@ -29,8 +29,8 @@ INLINE ushort32 mean_of(ushort32 a, ushort32 b)
     return __builtin_convertvector((as_wide(a) + as_wide(b) + 1u) >> 1u, ushort32);
 }
 
-/* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. The weights are 65536 together and each part
- * is rounded down, so that nothing comes out above LAST. */
+/* The Gaussian of 32 pixels, along x with a step of 1, along y with STRIDE. The weights are 65536 together and each
+ * part is rounded down, so that nothing comes out above LAST. */
 INLINE ushort32 blur(const ushort *centre, int step, const ushort32 *taps)
 {
     ushort32 sum = part_of(*(const lanes32 *)centre, taps[0]) + (ushort)((RADIUS + 1) / 2);
