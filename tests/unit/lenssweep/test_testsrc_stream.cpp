@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
+#include <atomic>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -300,6 +301,27 @@ TEST(TestSrcErrors, a_bad_change_while_playing_is_an_error)
     g_usleep(100000);
     g_object_set(pipeline.element("rig"), "noise", "loud", nullptr);
     EXPECT_NE(pipeline.wait().find("loud"), std::string::npos);
+}
+
+TEST(TestSrcLatency, can_be_asked_for_while_the_source_starts_and_stops)
+{
+    Pipeline pipeline("lenssweeptestsrc name=rig is-live=true" + small + "fakesink");
+    std::atomic<bool> done = false;
+    std::atomic<int> answers = 0;
+    std::thread other([&] {
+        g_autoptr(GstPad) pad = gst_element_get_static_pad(pipeline.element("rig"), "src");
+        while (!done) {
+            g_autoptr(GstQuery) query = gst_query_new_latency();
+            answers += gst_pad_query(pad, query) ? 1 : 0;
+        }
+    });
+    for (int i = 0; i < 300; i++) {
+        gst_element_set_state(pipeline.element("rig"), GST_STATE_PAUSED);
+        gst_element_set_state(pipeline.element("rig"), GST_STATE_READY);
+    }
+    done = true;
+    other.join();
+    EXPECT_GT(answers, 0);
 }
 
 TEST(TestSrcPipelines, documented_ones_run)

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lenssweeptestsrc_private.h"
+
+#include "stream_pad.h"
+
+#include <exception>
+#include <gst/video/video.h>
+
+static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
+{
+    TestStream &stream = *self->state->stream;
+    g_autoptr(GstCaps) templ = gst_pad_get_pad_template_caps(self->src_pad);
+    g_autoptr(GstCaps) possible = stream.caps(templ);
+    g_autoptr(GstCaps) wanted = gst_pad_peer_query_caps(self->src_pad, possible);
+    g_autoptr(GstCaps) common = gst_caps_intersect_full(possible, wanted, GST_CAPS_INTERSECT_FIRST);
+    if (gst_caps_is_empty(common)) {
+        GST_ELEMENT_ERROR(
+            self, STREAM, FORMAT,
+            ("Nothing downstream takes these pictures. The frame rate is planes times rate; put a "
+             "videoconvert behind this element for other formats."),
+            ("possible caps are %" GST_PTR_FORMAT, possible));
+        return GST_FLOW_ERROR;
+    }
+    g_autoptr(GstCaps) chosen = stream.fixate(static_cast<GstCaps *>(g_steal_pointer(&common)));
+    GstVideoInfo info;
+    if (!gst_video_info_from_caps(&info, chosen))
+        return GST_FLOW_NOT_NEGOTIATED;
+    g_autoptr(GstCaps) complete = gst_video_info_to_caps(&info);
+    if (!change_caps(self->src_pad, complete))
+        return GST_PAD_IS_FLUSHING(self->src_pad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
+    stream.set_format(info);
+    return GST_FLOW_OK;
+}
+
+/* A token that ends the rendering which begins now. */
+static std::stop_token rendering_token(GstLensSweepTestSrc *self)
+{
+    GST_OBJECT_LOCK(self);
+    std::stop_token token = self->state->stop.get_token();
+    GST_OBJECT_UNLOCK(self);
+    return token;
+}
+
+static GstFlowReturn render(GstLensSweepTestSrc *self)
+{
+    TestStream &stream = *self->state->stream;
+    const GstClockTime begin = gst_util_get_timestamp();
+    try {
+        stream.render(rendering_token(self));
+    } catch (const std::exception &error) {
+        GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("The scene cannot be rendered: %s.", error.what()),
+                          (nullptr));
+        return GST_FLOW_ERROR;
+    }
+    if (!stream.is_rendered())
+        return GST_FLOW_FLUSHING;
+    GST_INFO_OBJECT(self, "rendered in %" GST_TIME_FORMAT, GST_TIME_ARGS(gst_util_get_timestamp() - begin));
+    /* A live camera does not catch up on what it missed. */
+    if (stream.is_live() && self->state->pacer.wait_until_playing())
+        stream.postpone(gst_element_get_current_running_time(GST_ELEMENT(self)));
+    return GST_FLOW_OK;
+}
+
+static void begin_depth(GstLensSweepTestSrc *self, GstPad *pad)
+{
+    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
+    if (gst_pad_has_current_caps(self->src_pad)) {
+        g_autoptr(GstCaps) caps = self->state->stream->depth_caps();
+        change_caps(pad, caps);
+    }
+    begin_segment(pad);
+}
+
+/* Whoever does not take the depth any more does not stop the pictures. */
+static GstFlowReturn push_depth(GstLensSweepTestSrc *self, GstPad *pad)
+{
+    begin_depth(self, pad);
+    const GstFlowReturn flow = gst_pad_push(pad, self->state->stream->depth());
+    return flow == GST_FLOW_NOT_NEGOTIATED || flow <= GST_FLOW_ERROR ? flow : GST_FLOW_OK;
+}
+
+GstPad *gst_lens_sweep_test_src_ref_depth_pad(GstLensSweepTestSrc *self)
+{
+    GST_OBJECT_LOCK(self);
+    GstPad *pad = self->state->depth_pad;
+    if (pad)
+        gst_object_ref(pad);
+    GST_OBJECT_UNLOCK(self);
+    return pad;
+}
+
+static void take_changes(GstLensSweepTestSrc *self)
+{
+    GST_OBJECT_LOCK(self);
+    if (self->state->settings_changed)
+        self->state->stream->set_scene(self->state->settings.scene);
+    self->state->settings_changed = false;
+    GST_OBJECT_UNLOCK(self);
+}
+
+static bool eos_is_due(GstLensSweepTestSrc *self)
+{
+    GST_OBJECT_LOCK(self);
+    const bool wanted = self->state->eos_wanted;
+    GST_OBJECT_UNLOCK(self);
+    return wanted || self->state->stream->finished();
+}
+
+static GstFlowReturn produce(GstLensSweepTestSrc *self)
+{
+    TestStream &stream = *self->state->stream;
+    LivePacer &pacer = self->state->pacer;
+    begin_stream(GST_ELEMENT(self), self->src_pad, "src", gst_util_group_id_next());
+    if (stream.is_live() && !pacer.wait_until_playing())
+        return GST_FLOW_FLUSHING;
+    if (stream.at_sweep_start())
+        take_changes(self);
+
+    GstFlowReturn flow = GST_FLOW_OK;
+    if (gst_pad_check_reconfigure(self->src_pad) || !gst_pad_has_current_caps(self->src_pad))
+        flow = negotiate(self);
+    if (flow != GST_FLOW_OK)
+        return flow;
+    begin_segment(self->src_pad);
+    if (eos_is_due(self))
+        return GST_FLOW_EOS;
+    if (!stream.is_rendered())
+        flow = render(self);
+    if (flow != GST_FLOW_OK)
+        return flow;
+
+    g_autoptr(GstBuffer) buffer = stream.frame();
+    /* The picture leaves the camera at the end of its exposure. */
+    const GstClockTime end = GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer);
+    if (stream.is_live() && !pacer.wait_until(GST_ELEMENT(self), end))
+        return GST_FLOW_FLUSHING;
+    g_autoptr(GstPad) depth_pad =
+        stream.at_sweep_start() ? gst_lens_sweep_test_src_ref_depth_pad(self) : nullptr;
+    if (depth_pad)
+        flow = push_depth(self, depth_pad);
+    stream.advance();
+    return flow == GST_FLOW_OK
+               ? gst_pad_push(self->src_pad, static_cast<GstBuffer *>(g_steal_pointer(&buffer)))
+               : flow;
+}
+
+static void end_streams(GstLensSweepTestSrc *self)
+{
+    g_autoptr(GstPad) depth_pad = gst_lens_sweep_test_src_ref_depth_pad(self);
+    if (depth_pad) {
+        begin_depth(self, depth_pad);
+        gst_pad_push_event(depth_pad, gst_event_new_eos());
+    }
+    gst_pad_push_event(self->src_pad, gst_event_new_eos());
+}
+
+void gst_lens_sweep_test_src_loop(gpointer user_data)
+{
+    auto *self = GST_LENS_SWEEP_TEST_SRC(user_data);
+    const GstFlowReturn flow = produce(self);
+    if (flow == GST_FLOW_OK)
+        return;
+    GST_DEBUG_OBJECT(self, "stopping: %s", gst_flow_get_name(flow));
+    gst_pad_pause_task(self->src_pad);
+    if (flow == GST_FLOW_FLUSHING)
+        return;
+    /* For GST_FLOW_ERROR whoever failed has said why. */
+    if (flow == GST_FLOW_NOT_LINKED || flow == GST_FLOW_NOT_NEGOTIATED)
+        GST_ELEMENT_FLOW_ERROR(self, flow);
+    end_streams(self);
+}
