@@ -74,14 +74,14 @@ std::shared_ptr<Device> device_in(const GstContext *context)
 
 std::shared_ptr<Device> DeviceContext::open(const std::string &wish)
 {
-    if (const auto device = use_set(wish))
+    if (auto device = use_set(wish))
         return device;
     for (const GstPadDirection direction : {GST_PAD_SRC, GST_PAD_SINK})
-        if (const auto device = ask_neighbours(direction, wish))
+        if (auto device = ask_neighbours(direction, wish))
             return device;
     gst_element_post_message(element_,
                              gst_message_new_need_context(GST_OBJECT(element_), GST_DFF_DEVICE_CONTEXT_TYPE));
-    if (const auto device = use_set(wish))
+    if (auto device = use_set(wish))
         return device;
     return use_own(wish);
 }
