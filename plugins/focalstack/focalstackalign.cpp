@@ -31,8 +31,8 @@
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/focalstackalign_properties.h"
+#include "focalstack/partial_stack.h"
 #include "focalstack/stack_aligner.h"
-#include "focalstack/stack_buffer.h"
 #include "focalstack/stack_pictures.h"
 
 #include <optional>

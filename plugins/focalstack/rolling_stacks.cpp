@@ -45,7 +45,7 @@ bool RollingStacks::send_window()
     BufferPtr buffer = pool_.acquire();
     if (!buffer)
         return false;
-    StackBuffer stack(info(), std::move(buffer));
+    PartialStack stack(info(), std::move(buffer));
     stack.take_over(*window_);
     if (on_missing_ == OnMissing::Repeat)
         fill_from_neighbours(stack, fresh);

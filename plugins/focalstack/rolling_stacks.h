@@ -23,7 +23,7 @@ private:
     bool send_window();
 
     RollingWindow rolling_;
-    std::optional<StackBuffer> window_;
+    std::optional<PartialStack> window_;
 };
 
 } // namespace dff

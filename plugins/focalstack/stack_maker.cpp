@@ -34,7 +34,7 @@ std::optional<Outcome> StackMaker::next_outcome()
     return next;
 }
 
-void StackMaker::put(StackBuffer &stack, const PlaneFrame &frame)
+void StackMaker::put(PartialStack &stack, const PlaneFrame &frame)
 {
     stack.put(frame.focus.plane, frame);
     powers_[frame.focus.plane] = frame.focus.power;
@@ -55,13 +55,13 @@ void StackMaker::drop_stack(TimeSpan time)
     outcomes_.push_back({nullptr, time});
 }
 
-void StackMaker::send(StackBuffer &stack, uint64_t filled)
+void StackMaker::send(PartialStack &stack, uint64_t filled)
 {
     outcomes_.push_back({stack.finish(statistics_.stacks, filled), {}});
     statistics_.stacks++;
 }
 
-void StackMaker::fill_from_neighbours(StackBuffer &stack, uint64_t fresh) const
+void StackMaker::fill_from_neighbours(PartialStack &stack, uint64_t fresh) const
 {
     for (unsigned z = 0; z < planes(); z++) {
         if (fresh & plane_bit(z))

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "focalstack/frame_verdict.h"
-#include "focalstack/stack_buffer.h"
+#include "focalstack/partial_stack.h"
 
 #include <array>
 #include <cstdint>
@@ -62,13 +62,13 @@ protected:
     StackMaker(const GstFocalStackInfo &info, OnMissing on_missing, MuxStatistics &statistics);
 
     unsigned planes() const { return pool_.info().planes; }
-    void put(StackBuffer &stack, const PlaneFrame &frame);
+    void put(PartialStack &stack, const PlaneFrame &frame);
     void refuse(const PlaneFrame &frame, FrameVerdict verdict);
     void drop_stack(TimeSpan time);
-    void send(StackBuffer &stack, uint64_t filled);
+    void send(PartialStack &stack, uint64_t filled);
 
     /* Puts the nearest plane of `fresh` into every other one. */
-    void fill_from_neighbours(StackBuffer &stack, uint64_t fresh) const;
+    void fill_from_neighbours(PartialStack &stack, uint64_t fresh) const;
 
     StackPool pool_;
     OnMissing on_missing_;

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "focalstack/stack_buffer.h"
+#include "focalstack/partial_stack.h"
 
 #include <cstdint>
 

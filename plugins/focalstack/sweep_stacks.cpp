@@ -28,7 +28,7 @@ bool SweepStacks::add(const PlaneFrame &frame)
         BufferPtr buffer = pool_.acquire();
         if (!buffer)
             return false;
-        open = open_.emplace(frame.focus.sweep, StackBuffer(info(), std::move(buffer))).first;
+        open = open_.emplace(frame.focus.sweep, PartialStack(info(), std::move(buffer))).first;
     }
     put(open->second, frame);
     settle();
@@ -53,7 +53,7 @@ void SweepStacks::settle()
     }
 }
 
-void SweepStacks::finish_stack(StackBuffer &stack, uint64_t present)
+void SweepStacks::finish_stack(PartialStack &stack, uint64_t present)
 {
     const uint64_t missing = all_planes(planes()) & ~present;
     if (missing != 0 && !fill(stack, present)) {
@@ -65,7 +65,7 @@ void SweepStacks::finish_stack(StackBuffer &stack, uint64_t present)
         last_.emplace(std::move(stack));
 }
 
-bool SweepStacks::fill(StackBuffer &stack, uint64_t present) const
+bool SweepStacks::fill(PartialStack &stack, uint64_t present) const
 {
     if (on_missing_ == OnMissing::Repeat)
         fill_from_neighbours(stack, present);

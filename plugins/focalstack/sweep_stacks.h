@@ -21,12 +21,12 @@ public:
 
 private:
     void settle();
-    void finish_stack(StackBuffer &stack, uint64_t present);
-    bool fill(StackBuffer &stack, uint64_t present) const;
+    void finish_stack(PartialStack &stack, uint64_t present);
+    bool fill(PartialStack &stack, uint64_t present) const;
 
     StackAssembler assembler_;
-    std::map<uint64_t, StackBuffer> open_; /* by sweep; a handful at most */
-    std::optional<StackBuffer> last_;      /* with OnMissing::Hold: the last stack that was sent */
+    std::map<uint64_t, PartialStack> open_; /* by sweep; a handful at most */
+    std::optional<PartialStack> last_;      /* with OnMissing::Hold: the last stack that was sent */
 };
 
 } // namespace dff

@@ -53,10 +53,10 @@ struct PlaneFrame {
 };
 
 /* A stack whose planes come one by one. */
-class StackBuffer {
+class PartialStack {
 public:
     /* `buffer` comes from a pool of stacks of this shape. */
-    StackBuffer(const GstFocalStackInfo &info, BufferPtr buffer);
+    PartialStack(const GstFocalStackInfo &info, BufferPtr buffer);
 
     /* Copies the picture into the plane. */
     void put(unsigned plane, const PlaneFrame &frame);
@@ -66,8 +66,8 @@ public:
     void repeat(unsigned from, unsigned to, double power);
 
     /* Copies one plane, or all planes, of another stack of the same shape. */
-    void take_over(const StackBuffer &other, unsigned plane);
-    void take_over(const StackBuffer &other);
+    void take_over(const PartialStack &other, unsigned plane);
+    void take_over(const PartialStack &other);
 
     const GstFocusInfo &focus(unsigned plane) const { return planes_[plane].focus; }
 
@@ -87,7 +87,7 @@ private:
     };
 
     unsigned first_of(uint64_t fresh) const;
-    void copy_picture(const StackBuffer &other, unsigned from, unsigned to);
+    void copy_picture(const PartialStack &other, unsigned from, unsigned to);
 
     GstFocalStackInfo info_;
     BufferPtr buffer_;

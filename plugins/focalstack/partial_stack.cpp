@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-#include "focalstack/stack_buffer.h"
+#include "focalstack/partial_stack.h"
 
 #include "focalstack/frame_verdict.h"
 
@@ -68,7 +68,7 @@ BufferPtr StackPool::acquire()
     return BufferPtr(buffer);
 }
 
-StackBuffer::StackBuffer(const GstFocalStackInfo &info, BufferPtr buffer)
+PartialStack::PartialStack(const GstFocalStackInfo &info, BufferPtr buffer)
     : info_(info), buffer_(std::move(buffer)), planes_(info.planes)
 {
     for (unsigned z = 0; z < info_.planes; z++) {
@@ -78,7 +78,7 @@ StackBuffer::StackBuffer(const GstFocalStackInfo &info, BufferPtr buffer)
     }
 }
 
-void StackBuffer::put(unsigned plane, const PlaneFrame &frame)
+void PartialStack::put(unsigned plane, const PlaneFrame &frame)
 {
     GstVideoFrame target;
     if (gst_video_frame_map_id(&target, &info_.frame, buffer_.get(), static_cast<gint>(plane),
@@ -91,7 +91,7 @@ void StackBuffer::put(unsigned plane, const PlaneFrame &frame)
     planes_[plane].focus.planes = info_.planes;
 }
 
-void StackBuffer::copy_picture(const StackBuffer &other, unsigned from, unsigned to)
+void PartialStack::copy_picture(const PartialStack &other, unsigned from, unsigned to)
 {
     const gsize size = GST_VIDEO_INFO_SIZE(&info_.frame);
     GstMapInfo source;
@@ -107,7 +107,7 @@ void StackBuffer::copy_picture(const StackBuffer &other, unsigned from, unsigned
     gst_buffer_unmap(buffer_.get(), &target);
 }
 
-void StackBuffer::repeat(unsigned from, unsigned to, double power)
+void PartialStack::repeat(unsigned from, unsigned to, double power)
 {
     copy_picture(*this, from, to);
     planes_[to] = planes_[from];
@@ -115,19 +115,19 @@ void StackBuffer::repeat(unsigned from, unsigned to, double power)
     planes_[to].focus.power = power;
 }
 
-void StackBuffer::take_over(const StackBuffer &other, unsigned plane)
+void PartialStack::take_over(const PartialStack &other, unsigned plane)
 {
     copy_picture(other, plane, plane);
     planes_[plane] = other.planes_[plane];
 }
 
-void StackBuffer::take_over(const StackBuffer &other)
+void PartialStack::take_over(const PartialStack &other)
 {
     for (unsigned z = 0; z < info_.planes; z++)
         take_over(other, z);
 }
 
-unsigned StackBuffer::first_of(uint64_t fresh) const
+unsigned PartialStack::first_of(uint64_t fresh) const
 {
     /* GST_CLOCK_TIME_NONE is greater than every time. */
     unsigned first = info_.planes;
@@ -138,7 +138,7 @@ unsigned StackBuffer::first_of(uint64_t fresh) const
     return first;
 }
 
-TimeSpan StackBuffer::span(uint64_t fresh) const
+TimeSpan PartialStack::span(uint64_t fresh) const
 {
     const unsigned first = first_of(fresh);
     if (first == info_.planes || !GST_CLOCK_TIME_IS_VALID(planes_[first].time.start))
@@ -154,7 +154,7 @@ TimeSpan StackBuffer::span(uint64_t fresh) const
     return {start, end > start ? end - start : GST_CLOCK_TIME_NONE};
 }
 
-BufferPtr StackBuffer::finish(uint64_t sequence, uint64_t filled)
+BufferPtr PartialStack::finish(uint64_t sequence, uint64_t filled)
 {
     const uint64_t fresh = all_planes(info_.planes) & ~filled;
     const TimeSpan time = span(fresh);
