@@ -18,9 +18,12 @@ const std::string graph =
     "lightfieldcompose name=l layout=rgbd ! appsink name=out sync=false";
 
 /* Another than the one that elements open for themselves. */
-std::shared_ptr<Device> own_device()
+std::shared_ptr<Device> other_device()
 {
-    return std::make_shared<Device>(Device::open("")->device());
+    /* Never destroyed: at the process's end the driver may have gone before it. */
+    static const auto &device =
+        *new std::shared_ptr<Device>(std::make_shared<Device>(Device::open("")->device()));
+    return device;
 }
 
 /* The device that the element at the other end of this pad's link tells of. */
@@ -60,7 +63,7 @@ void expect_pictures(const TestPipeline &pipeline, size_t count = 2)
 TEST(DeviceContext, what_one_element_was_given_all_its_neighbours_use)
 {
     TestPipeline pipeline(graph);
-    const std::shared_ptr<Device> device = own_device();
+    const std::shared_ptr<Device> device = other_device();
     set_context(pipeline.element("d"), device);
     pipeline.play();
     expect_pictures(pipeline);
@@ -74,7 +77,7 @@ TEST(DeviceContext, what_one_element_was_given_all_its_neighbours_use)
 TEST(DeviceContext, what_the_application_sets_on_the_pipeline_holds_for_all)
 {
     TestPipeline pipeline(graph);
-    const std::shared_ptr<Device> device = own_device();
+    const std::shared_ptr<Device> device = other_device();
     set_context(pipeline.bin(), device);
     pipeline.play();
     expect_pictures(pipeline);
@@ -85,7 +88,7 @@ TEST(DeviceContext, what_the_application_sets_on_the_pipeline_holds_for_all)
 TEST(DeviceContext, the_application_is_asked_once_and_its_answer_is_used)
 {
     struct Application {
-        std::shared_ptr<Device> device = own_device();
+        std::shared_ptr<Device> device = other_device();
         unsigned asked = 0, told = 0;
     } application;
     TestPipeline pipeline(graph);
@@ -159,7 +162,7 @@ TEST(DeviceContext, the_property_wins_over_the_application)
     for (TestPipeline *pipeline : {&other, &same})
         for (const char *element : {"d", "c", "l"})
             g_object_set(pipeline->element(element), "device", name.c_str(), nullptr);
-    const std::shared_ptr<Device> device = own_device();
+    const std::shared_ptr<Device> device = other_device();
     set_context(other.bin(), "no such device");
     set_context(same.bin(), device);
     other.play();
