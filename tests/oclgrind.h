@@ -2,8 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * Stands before every kernel file in oclgrind.sh: what the simulator does not know. */
-#define INLINE                                                                                               \
-    inline /* functions that return structures stay calls; inlined, they copy by functions of LLVM */
+/* Functions that return structures stay calls; inlined, they copy by functions of LLVM. */
+#define INLINE inline
 #define PREFETCH(address)
 
 /* `next` makes the result of all lanes up to lanes[i]. */
