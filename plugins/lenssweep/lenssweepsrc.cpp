@@ -35,8 +35,9 @@
  * ## Example launch line
  * |[
  * gst-launch-1.0 lenssweepsrc camera=Fake_1 trigger=free-run rate=5 num-buffers=24 ! focalstackmux ! fakesink
- * ]| A camera that Aravis simulates. With a real one and a sequencer: `lenssweepsrc lens=fpga:/dev/i2c-1@0x3c
- * run-line=gpiochip0:5 sync-line=gpiochip0:6 near=5 far=0`.
+ * ]| A camera that Aravis simulates; it ignores triggers and needs `trigger=free-run`. With a real one and a
+ * sequencer: `lenssweepsrc lens=fpga:/dev/i2c-1@0x3c run-line=gpiochip0:5 sync-line=gpiochip0:6 near=5
+ * far=0`.
  */
 #include "lenssweepsrc.h"
 
@@ -71,6 +72,16 @@ static void warn_of_blind_labels(GstLensSweepSrc *self, const dff::CaptureSettin
             (nullptr));
 }
 
+static void warn_of_simulated_camera(GstLensSweepSrc *self, const dff::CaptureSettings &settings)
+{
+    if (settings.trigger != dff::TriggerKind::FreeRun && self->state->capture->camera().ignores_triggers())
+        GST_ELEMENT_WARNING(
+            self, RESOURCE, SETTINGS,
+            ("Aravis simulates this camera, and it ignores triggers: its planes cannot be told. "
+             "Set trigger=free-run."),
+            (nullptr));
+}
+
 static gboolean start(GstBaseSrc *source)
 {
     auto *self = GST_LENS_SWEEP_SRC(source);
@@ -97,6 +108,7 @@ static gboolean start(GstBaseSrc *source)
         return FALSE;
     }
     warn_of_blind_labels(self, state.settings);
+    warn_of_simulated_camera(self, state.settings);
     return TRUE;
 }
 

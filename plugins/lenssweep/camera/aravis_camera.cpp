@@ -128,6 +128,11 @@ unsigned AravisCamera::packet()
     return call("its packet size", arv_camera_gv_get_packet_size);
 }
 
+bool AravisCamera::ignores_triggers() const
+{
+    return ARV_IS_FAKE_DEVICE(arv_camera_get_device(handle()));
+}
+
 bool AravisCamera::has_ptp()
 {
     for (const char *feature : {"PtpEnable", "GevIEEE1588"})

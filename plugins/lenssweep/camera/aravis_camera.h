@@ -62,6 +62,10 @@ public:
     /* Whether its clock follows PTP. */
     bool has_ptp();
 
+    /* Whether it is the camera that Aravis simulates in this process, which sends frames at its own pace
+     * whatever its trigger is set to. */
+    bool ignores_triggers() const;
+
     std::vector<std::string> pixel_formats();
     std::string pixel_format();
     void set_pixel_format(const std::string &format);

@@ -231,6 +231,13 @@ TEST(LensSweepSrc, nobody_who_tells_the_plane_is_warned_of)
     EXPECT_NE(warning.find("sync-line or run-line"), std::string::npos) << warning;
 }
 
+TEST(LensSweepSrc, a_simulated_camera_that_is_to_be_triggered_is_warned_of)
+{
+    const std::string warning = warning_of("lenssweepsrc camera=Fake_1 trigger=software ! fakesink");
+    EXPECT_NE(warning.find("trigger=free-run"), std::string::npos) << warning;
+    EXPECT_EQ(warning_of(camera + "num-buffers=1 ! fakesink"), "");
+}
+
 TEST(LensSweepSrc, trigger_timeout_is_an_error_that_says_what_to_look_at)
 {
     const std::string error = Pipeline("lenssweepsrc camera=Fake_1 trigger=free-run planes=2 rate=0.5 "
