@@ -206,7 +206,8 @@ void SweepCapture::recover()
             "The camera's frames and the triggers do not fit together. Check that planes and rate are "
             "those of the sequencer, that sync-line pulses at plane 0, and that the camera takes every "
             "trigger (exposure, TriggerOverlap) and sends a frame within a period of its exposure "
-            "and the time that the link needs for it.");
+            "and the time that the link needs for it. One that heeds no trigger, as most "
+            "simulated cameras, needs trigger=free-run.");
     restarts_++;
     if (triggers_->restartable()) {
         triggers_->stop();
