@@ -6,10 +6,10 @@
  *     F  = [.7t 2 .7t] / (2 + 1.4t) * focus, along z
  *     T  = max_z F,  S = T - min_z F
  *     C0 = (T0 - F0) / (T0 + 1.5 med T0 + 4)
- *     C  = C0 + t (1 - k0)^2 (T1 - F1) / (S1 + 4 (med S1 + 0.5)),  k0 = S0 / (S0 + 0.5 (med S0 + 2))
+ *     C  = C0 + (2 - t) (1 - k0)^2 (T1 - F1) / (S1 + 4 (med S1 + 0.5)),  k0 = S0 / (S0 + 0.5 (med S0 + 2))
  *
  * F0 is the fine band (focus_volume.cl); F1 the coarse one, SML with taps 2 apart of the blurred colours, which speaks
- * only in noise (t > QUIET) and where the fine one is silent. Beside the costs a first guess: u0 = argmin_z box(C0).
+ * where the fine one is silent: in noise, and between blurred edges, which it still sees. Beside the costs a first guess: u0 = argmin_z box(C0).
  *
  * Focus and costs are shorts, the sides of the costs are mirrored; T and S are floats in 1/FOCUS_ONE DN.
  */
@@ -28,10 +28,8 @@ INLINE float8 smooth_focus(__global const short *cells, size_t plane, int z, int
 
 /* top = T, range = S. Work-items (1, low height). */
 __kernel void evidence(__global const short *focus, __global const Noise *noise, __global float *top,
-                       __global float *range, int only_in_noise, int width, int stride, int planes)
+                       __global float *range, int width, int stride, int planes)
 {
-    if (only_in_noise && noise->t <= QUIET)
-        return;
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
     const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
     for (int x = 0; x < width; x += 8) {
@@ -82,12 +80,9 @@ __kernel void quantile(__global const float *picture, __global float *result, fl
 }
 
 /* medians of two pictures of T or S, in DN; the largest of the second. Work-items (1, 2). */
-__kernel void summarise(__global const float *first, __global const float *second, __global const Noise *noise,
-                        __global float *medians, __global float *largest, int only_in_noise, int width, int height,
-                        int stride)
+__kernel void summarise(__global const float *first, __global const float *second, __global float *medians,
+                        __global float *largest, int width, int height, int stride)
 {
-    if (only_in_noise && noise->t <= QUIET)
-        return;
     const int i = (int)get_global_id(1);
     medians[i] = quantile_of(i ? second : first, 0.5f, 1.0f / FOCUS_ONE, width, height, stride) / FOCUS_ONE;
     if (i == 0)
@@ -186,11 +181,9 @@ INLINE void blur_row(__global const short *small, int y, int height, __global fl
 
 /* F1 before it is smoothed along z: the mean over the colours of SML with taps 2 apart, in a box. One work-item takes
  * `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each. */
-__kernel void coarse_focus(__global const short *small, __global const Noise *noise, __global short *focus,
-                           __global float *scratch, int width, int height, int stride, int strip)
+__kernel void coarse_focus(__global const short *small, __global short *focus, __global float *scratch, int width,
+                           int height, int stride, int strip)
 {
-    if (noise->t <= QUIET)
-        return;
     const int z = (int)get_global_id(2), first = (int)get_global_id(1) * strip, last = min(first + strip, height);
     const int top = max(first - COARSE_BOX, 0), bottom = min(last + COARSE_BOX, height);
     const int blurred_top = max(top - 2, 0), blurred_bottom = min(bottom + 2, height);
@@ -243,12 +236,10 @@ __kernel void add_coarse_cost(__global const short *focus, __global const float 
                               __global const float *medians, __global const Noise *noise, __global short *cost,
                               int width, int stride)
 {
-    if (noise->t <= QUIET)
-        return;
     const int z = (int)get_global_id(2), planes = (int)get_global_size(2);
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
     const float silence = 0.5f * (fine_medians[1] + 2.0f) * FOCUS_ONE, floor = 4.0f * (medians[1] + 0.5f) * FOCUS_ONE;
-    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise), share = noise->t * COST_ONE;
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise), share = (2.0f - noise->t) * COST_ONE;
     __global short *costs = cost + z * plane + row;
     for (int x = 0; x < width; x += 8) {
         const float8 silent = silence / (READ_CELLS(fine_range + row + x) + silence); /* 1 - k0 */

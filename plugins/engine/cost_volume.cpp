@@ -54,10 +54,10 @@ void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const N
 void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
 {
     queue_.begin_stage("cost");
-    queue_.run(find_evidence_, low_.rows(), focus.volume(), noise.noise(), top_, range_, cl_int{0},
-               low_.width, low_.stride, low_.planes);
-    queue_.run(summarise_, {1, 2}, top_, range_, noise.noise(), medians_, largest_range_, cl_int{0},
-               low_.width, low_.height, low_.stride);
+    queue_.run(find_evidence_, low_.rows(), focus.volume(), noise.noise(), top_, range_, low_.width,
+               low_.stride, low_.planes);
+    queue_.run(summarise_, {1, 2}, top_, range_, medians_, largest_range_, low_.width, low_.height,
+               low_.stride);
     queue_.run(fine_cost_, low_.strips_of(1), focus.volume(), top_, medians_, noise.noise(), cost_, guess_,
                scratch_, low_.width, low_.height, low_.stride, low_.planes, low_.strip);
 }
@@ -65,12 +65,12 @@ void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
 void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise)
 {
     queue_.begin_stage("coarse-cost");
-    queue_.run(coarse_focus_, low_.strips_of(low_.planes), small.colours(), noise.noise(), coarse_,
-               coarse_scratch_, low_.width, low_.height, low_.stride, low_.strip);
-    queue_.run(find_evidence_, low_.rows(), coarse_, noise.noise(), coarse_top_, coarse_range_, cl_int{1},
-               low_.width, low_.stride, low_.planes);
-    queue_.run(summarise_, {1, 2}, coarse_top_, coarse_range_, noise.noise(), coarse_medians_,
-               largest_coarse_range_, cl_int{1}, low_.width, low_.height, low_.stride);
+    queue_.run(coarse_focus_, low_.strips_of(low_.planes), small.colours(), coarse_, coarse_scratch_,
+               low_.width, low_.height, low_.stride, low_.strip);
+    queue_.run(find_evidence_, low_.rows(), coarse_, noise.noise(), coarse_top_, coarse_range_, low_.width,
+               low_.stride, low_.planes);
+    queue_.run(summarise_, {1, 2}, coarse_top_, coarse_range_, coarse_medians_, largest_coarse_range_,
+               low_.width, low_.height, low_.stride);
     queue_.run(add_coarse_cost_, low_.rows_of_planes(), coarse_, coarse_top_, range_, coarse_range_, medians_,
                coarse_medians_, noise.noise(), cost_, low_.width, low_.stride);
 }

@@ -205,7 +205,7 @@ Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, f
         const float known = fine_range.at(x, y) / (fine_range.at(x, y) + 0.5f * (median_fine_range + 2.0f));
         const float own =
             (top.at(x, y) - coarse.at(x, y, z)) / (range.at(x, y) + 4.0f * (median_range + 0.5f));
-        return fine_cost.at(x, y, z) + (t > 0.1f ? t * (1.0f - known) * (1.0f - known) * own : 0.0f);
+        return fine_cost.at(x, y, z) + (2.0f - t) * (1.0f - known) * (1.0f - known) * own;
     });
 }
 
