@@ -9,7 +9,8 @@
  *     C  = C0 + (2 - t) (1 - k0)^2 (T1 - F1) / (S1 + 4 (med S1 + 0.5)),  k0 = S0 / (S0 + 0.5 (med S0 + 2))
  *
  * F0 is the fine band (focus_volume.cl); F1 the coarse one, SML with taps 2 apart of the blurred colours, which speaks
- * where the fine one is silent: in noise, and between blurred edges, which it still sees. Beside the costs a first guess: u0 = argmin_z box(C0).
+ * where the fine one is silent: in noise, and between blurred edges, which it still sees. Beside the costs a first guess:
+ * u0 = argmin_z box(C0).
  *
  * Focus and costs are shorts, the sides of the costs are mirrored; T and S are floats in 1/FOCUS_ONE DN.
  */

@@ -80,6 +80,14 @@ INLINE ushort32 part_of(ushort32 a, ushort32 b)
 #endif
 }
 
+INLINE float sum_of_lanes(float16 v)
+{
+    const float8 a = v.lo + v.hi;
+    const float4 b = a.lo + a.hi;
+    const float2 c = b.lo + b.hi;
+    return c.lo + c.hi;
+}
+
 /* The least lane of a vector, the greatest one, whether any is not 0, and the sum of bytes. */
 #ifdef __SPIR__ /* a simulator, which knows none of the built-ins */
 #define REDUCTION(name, vector, scalar, lanes, operation)                                                              \
@@ -90,9 +98,11 @@ INLINE ushort32 part_of(ushort32 a, ushort32 b)
             all = operation;                                                                                           \
         return all;                                                                                                    \
     }
+REDUCTION(least_of, uchar16, uchar, 16, min(all, v[i]))
 REDUCTION(least_of, ushort16, ushort, 16, min(all, v[i]))
 REDUCTION(least_of, ushort32, ushort, 32, min(all, v[i]))
 REDUCTION(least_of, uchar64, uchar, 64, min(all, v[i]))
+REDUCTION(most_of, uchar16, uchar, 16, max(all, v[i]))
 REDUCTION(most_of, ushort16, ushort, 16, max(all, v[i]))
 REDUCTION(most_of, ushort32, ushort, 32, max(all, v[i]))
 REDUCTION(most_of, uchar64, uchar, 64, max(all, v[i]))

@@ -49,14 +49,6 @@ INLINE float16 system_at(ConstCells e, ConstCells x, int i)
     return at(x, i) - at(e, i) * sum;
 }
 
-INLINE float sum_of_lanes(float16 v)
-{
-    const float8 a = v.lo + v.hi;
-    const float4 b = a.lo + a.hi;
-    const float2 c = b.lo + b.hi;
-    return c.lo + c.hi;
-}
-
 /* Sum over the grid of what each row gives; behind the rows stands 0 up to a whole vector. */
 INLINE float2 sum_of_rows(__global const float2 *row_sums)
 {

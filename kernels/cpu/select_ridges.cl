@@ -7,12 +7,10 @@
 #include "lanes32.cl"
 
 #define RIDGE_RADIUS 3
-#define HALVE 128   /* takes 1 from the exponent */
-#define AHEAD 8     /* rows asked for ahead */
-#define STRIP 36    /* rows a work-item */
-#define SEGMENT 256 /* columns a work-item; the last one has the rest too, so that none has less than 64 */
-#define TOGETHER 8  /* segments that the first of as many work-items takes, since long rows are read faster */
-#define ROOM ((TOGETHER + 1) * SEGMENT)
+#define HALVE 128    /* takes 1 from the exponent */
+#define AHEAD 8      /* rows asked for ahead */
+#define STRIP 36     /* rows a work-item */
+#define SEGMENT 2048 /* columns at most: long rows are read faster */
 
 /* Greatest of 7 neighbours in a row, for 32 pixels. */
 inline ushort32 row_maximum(__global const ushort *peak)
@@ -32,17 +30,15 @@ inline uchar32 is_ridge(ushort32 peak, ushort32 most, ushort mean)
     return __builtin_convertvector(ridge, uchar32);
 }
 
-/* One work-item a segment of a strip. `peak` and `peak_plane` have `stride` pixels a row with 16 columns of 0 or more
+/* One work-item a segment of a strip; segments are equal but for the last. `peak` and `peak_plane` have `stride` pixels a row with 16 columns of 0 or more
  * between rows; sparse and moved are uchar[height][width]. */
 __kernel void select_ridges(__global const ushort *peak, __global const uchar *peak_plane,
                             __global const float *tile_sums, int tiles, __global const uchar *moved,
                             __global uchar *sparse, int stride, int width, int height, int use_moved)
 {
-    ushort highest[(STRIP + 2 * RIDGE_RADIUS) * ROOM] __attribute__((aligned(64)));
-    if (get_group_id(0) % TOGETHER)
-        return;
-    const int left = (int)get_group_id(0) * SEGMENT;
-    const int right = get_group_id(0) + TOGETHER >= get_num_groups(0) ? width : left + TOGETHER * SEGMENT;
+    ushort highest[(STRIP + 2 * RIDGE_RADIUS) * SEGMENT] __attribute__((aligned(64)));
+    const int vectors = 32 * (int)get_num_groups(0), columns = (width + vectors - 1) / vectors * 32;
+    const int left = (int)get_group_id(0) * columns, right = min(left + columns, width);
     const int top = (int)get_group_id(1) * STRIP, bottom = min(top + STRIP, height);
 
     float total = 0.0f;
@@ -54,17 +50,17 @@ __kernel void select_ridges(__global const ushort *peak, __global const uchar *p
         for (int x = left; x < right; x += 32) {
             const int from = min(x, right - 32); /* the last lanes overlap the ones before */
             PREFETCH(peak + (ulong)(y + AHEAD) * stride + from);
-            *(lanes32 *)(highest + (y - top + RIDGE_RADIUS) * ROOM + from - left) =
+            *(lanes32 *)(highest + (y - top + RIDGE_RADIUS) * SEGMENT + from - left) =
                 y < 0 || y >= height ? (ushort32)0 : row_maximum(peak + (ulong)y * stride + from);
         }
 
     for (int y = top; y < bottom; y++)
         for (int x = left; x < right; x += 32) {
             const int from = min(x, right - 32);
-            const ushort *window = highest + (y - top) * ROOM + from - left;
+            const ushort *window = highest + (y - top) * SEGMENT + from - left;
             ushort32 most = *(const lanes32 *)window;
             for (int j = 1; j <= 2 * RIDGE_RADIUS; j++)
-                most = max32(most, *(const lanes32 *)(window + j * ROOM));
+                most = max32(most, *(const lanes32 *)(window + j * SEGMENT));
             const ulong entry = (ulong)y * stride + from, pixel = (ulong)y * width + from;
             PREFETCH(peak_plane + entry + AHEAD * stride);
             PREFETCH(moved + pixel + AHEAD * width);

@@ -22,27 +22,6 @@ inline float16 n_log2(float16 n)
     return n * (convert_float16((bits >> 23) - 127) + log_m);
 }
 
-inline float sum_of_lanes(float16 v)
-{
-    const float8 a = v.lo + v.hi;
-    const float4 b = a.lo + a.hi;
-    const float2 c = b.lo + b.hi;
-    return c.lo + c.hi;
-}
-
-inline int lowest(uchar16 v)
-{
-    const uchar8 a = min(v.lo, v.hi);
-    const uchar4 b = min(a.lo, a.hi);
-    const uchar2 c = min(b.lo, b.hi);
-    return min(c.lo, c.hi);
-}
-
-inline int highest(uchar16 v)
-{
-    return 255 - lowest(~v);
-}
-
 /* Which of 16 pixels moved, 255 each, among the `candidates`: H = log2 N - 1/N sum of n log2 n over the bins with n of
  * the N planes is above the threshold where that sum is below `least`. */
 inline uchar16 moves(__global const uchar *stack, const ulong *starts, int x, int planes, float least,
@@ -55,8 +34,8 @@ inline uchar16 moves(__global const uchar *stack, const ulong *starts, int x, in
         last = max(last, bins[z]);
     }
     float16 sum = 0.0f;
-    const int end = highest(last & candidates);
-    for (int bin = lowest(first | ~candidates); bin <= end; bin++) {
+    const int end = most_of(last & candidates);
+    for (int bin = least_of(first | ~candidates); bin <= end; bin++) {
         uchar16 count = 0;
         for (int z = 0; z < planes; z++)
             count -= as_uchar16(bins[z] == (uchar16)(uchar)bin);

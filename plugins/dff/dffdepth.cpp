@@ -7,8 +7,7 @@
  *
  * Computes a dense depth map from each focal stack: the depth from focus of Oliva-García et al., Applied
  * Sciences 2022, 12, 3141, on any OpenCL device. Exactly one depth frame leaves for each stack; where nothing
- * can be told it is all 0
- * ("no value") and has the flags GAP and CORRUPTED.
+ * can be told it is all 0 ("no value") and has the flags GAP and CORRUPTED.
  *
  * The request pads `sparse` (depth before it is filled, 0 = unknown), `confidence` (GRAY8) and `motion`
  * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.

@@ -2,14 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/cpu/focus_tiles.h"
 
-#include <algorithm>
-
 namespace dff {
 
 namespace {
 
 /* TILE_WIDTH and TILE_HEIGHT of tile.cl, SEGMENT and STRIP of select_ridges.cl */
-constexpr size_t tile_width = 384, tile_height = 36, segment = 256, strip = 36;
+constexpr size_t tile_width = 384, tile_height = 36, segment = 2048, strip = 36;
 
 constexpr size_t block = 64; /* BLOCK of tile.cl */
 
@@ -57,9 +55,8 @@ void FocusTiles::run(const LumaPlanes &luma, bool motion_mask, bool with_confide
                       planes, tolerance_, entropy_bits_, static_cast<cl_int>(with_confidence));
 
     queue_.begin_stage("sparse-depth");
-    queue_.run_groups(select_ridges_,
-                      {std::max<size_t>(shape_.width / segment, 1), parts_of(shape_.height, strip)}, peak_,
-                      peak_plane_, tile_sums_, tiles, moved_, sparse_, stride, width, height,
+    queue_.run_groups(select_ridges_, {parts_of(shape_.width, segment), parts_of(shape_.height, strip)},
+                      peak_, peak_plane_, tile_sums_, tiles, moved_, sparse_, stride, width, height,
                       static_cast<cl_int>(motion_mask));
 }
 
