@@ -40,6 +40,33 @@ TestStack two_halves(const StackShape &shape, float left, float right, float noi
     return stack;
 }
 
+/* Stripes of a bar code behind the far end of the sweep: no plane has them sharp, the last one least blurred.
+ */
+TestStack blurred_stripes(const StackShape &shape)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> stripe_width(24.0f, 60.0f);
+    std::normal_distribution<float> grain(0.0f, 0.25f);
+    std::vector<float> edges;
+    for (float x = 0.0f; x < static_cast<float>(shape.width); x += stripe_width(random))
+        edges.push_back(x);
+
+    TestStack stack(shape);
+    for (unsigned z = 0; z < shape.planes; z++) {
+        const float sigma = 8.0f + 2.0f * static_cast<float>(shape.planes - 1 - z);
+        for (unsigned x = 0; x < shape.width; x++) {
+            float value = 60.0f;
+            for (size_t i = 0; i < edges.size(); i++)
+                value +=
+                    (i % 2 ? -60.0f : 60.0f) * (1.0f + std::erf((static_cast<float>(x) - edges[i]) / sigma));
+            for (unsigned y = 0; y < shape.height; y++)
+                stack.memory[stack.layout[z].offset + stack.layout[z].stride * y + x] =
+                    static_cast<std::byte>(std::clamp(value + grain(random), 0.0f, 255.0f));
+        }
+    }
+    return stack;
+}
+
 struct Result {
     std::vector<double> u; /* -1 where there is no value */
     std::vector<uint16_t> depth, sparse;
@@ -152,6 +179,14 @@ TEST(VolumeMethod, what_has_no_texture_is_smooth_and_says_so)
 }
 
 /* Takes planes one by one from each of two stacks in turn, as a rolling window does; then three at once. */
+TEST(VolumeMethod, stripes_nowhere_in_focus_lie_where_they_are_least_blurred)
+{
+    const StackShape shape{PixelFormat::Gray8, 400, 160, 7};
+    const Result result = compute(blurred_stripes(shape));
+    const auto near = std::count_if(result.u.begin(), result.u.end(), [](double u) { return u < 5.0; });
+    EXPECT_LT(near, static_cast<std::ptrdiff_t>(result.u.size() / 10));
+}
+
 TEST(VolumeMethod, a_rolling_window_has_the_depth_of_whole_stacks)
 {
     const StackShape shape{PixelFormat::I420, 160, 121, 6};
