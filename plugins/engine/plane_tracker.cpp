@@ -37,8 +37,23 @@ uint64_t fingerprint(const StackView &stack, size_t z)
 
 } // namespace
 
+/* Otherwise the sweeps are not numbered, or numbered anew, and identities tell nothing. */
+bool PlaneTracker::is_followed_by(const StackView &stack) const
+{
+    bool has_new_plane = false;
+    for (size_t z = 0; z < known_.size(); z++) {
+        const std::optional<PlaneIdentity> identity = identity_of(stack, z), &known = known_[z].identity;
+        if (identity && known && identity->sweep < known->sweep)
+            return false;
+        has_new_plane = has_new_plane || (identity && identity != known);
+    }
+    return has_new_plane;
+}
+
 uint64_t PlaneTracker::changed(const StackView &stack) const
 {
+    if (!is_followed_by(stack))
+        return ~uint64_t{0} >> (64 - stack.shape.planes);
     uint64_t changed = 0;
     for (size_t z = 0; z < stack.shape.planes; z++) {
         const std::optional<PlaneIdentity> identity = identity_of(stack, z);

@@ -50,11 +50,12 @@ TEST(PlaneTracker, after_a_gap_all_that_was_missed_is_new)
 TEST(PlaneTracker, planes_of_which_nothing_is_known_are_new)
 {
     const TestStack stack(shape);
-    StackView view = view_of(stack, {7, 7, 7, 7});
-    view.identities[2].reset();
+    StackView before = view_of(stack, {7, 7, 7, 7}), after = view_of(stack, {8, 7, 7, 7});
+    before.identities[2].reset();
+    after.identities[2].reset();
     PlaneTracker tracker;
-    tracker.remember(view);
-    EXPECT_EQ(tracker.changed(view), 0b0100u);
+    tracker.remember(before);
+    EXPECT_EQ(tracker.changed(after), 0b0101u);
     tracker.remember(stack.view());
     EXPECT_EQ(tracker.changed(stack.view()), all);
 }
@@ -66,7 +67,23 @@ TEST(PlaneTracker, a_plane_with_other_pixels_is_new)
     tracker.remember(view_of(stack, {7, 7, 7, 7}));
     for (size_t i = 0; i < size_t{64} * 64; i++)
         stack.memory[stack.layout[1].offset + i] ^= std::byte{1};
-    EXPECT_EQ(tracker.changed(view_of(stack, {7, 7, 7, 7})), 0b0010u);
+    EXPECT_EQ(tracker.changed(view_of(stack, {8, 7, 7, 7})), 0b0011u);
+}
+
+TEST(PlaneTracker, stacks_whose_sweeps_are_not_numbered_are_all_new)
+{
+    const TestStack stack(shape);
+    PlaneTracker tracker;
+    tracker.remember(view_of(stack, {0, 0, 0, 0}));
+    EXPECT_EQ(tracker.changed(view_of(stack, {0, 0, 0, 0})), all);
+}
+
+TEST(PlaneTracker, sweeps_that_are_numbered_anew_are_all_new)
+{
+    const TestStack stack(shape);
+    PlaneTracker tracker;
+    tracker.remember(view_of(stack, {1, 0, 0, 0}));
+    EXPECT_EQ(tracker.changed(view_of(stack, {0, 0, 0, 0})), all);
 }
 
 TEST(PlaneTracker, a_plane_in_another_place_is_new)
