@@ -153,80 +153,84 @@ __kernel void fine_cost(__global const short *focus, __global const float *top, 
         }
 }
 
-/* Gaussian of sigma 1. */
-__constant float gaussian[5] = {0.39905017f, 0.24203622f, 0.05400558f, 0.00443305f, 0.00013383f};
 #define COARSE_BOX 3 /* radius */
 
-/* The blurred colour's row y, sides mirrored. */
-INLINE void blur_row(__global const short *small, int y, int height, __global float *half_blurred,
-                     __global float *blurred, int width, int stride)
+/* (1 4 6 4 1) / 16 of samples at 0, of the means of those at -1 and 1, and of those at -2 and 2: a Gaussian of sigma 1. */
+INLINE ushort16 binomial(ushort16 here, ushort16 near, ushort16 far)
 {
-    for (int x = 0; x < width; x += 8) {
-        float8 sum = gaussian[0] * READ_SHORT_CELLS(small + (size_t)y * stride + x);
-        UNROLL
-        for (int i = 1; i <= 4; i++)
-            sum += gaussian[i] * (READ_SHORT_CELLS(small + (size_t)reflect(y - i, height) * stride + x) +
-                                  READ_SHORT_CELLS(small + (size_t)reflect(y + i, height) * stride + x));
-        CELLS(half_blurred + x) = sum;
-    }
-    mirror_ends(half_blurred, width);
-    for (int x = 0; x < width; x += 8) {
-        float8 sum = gaussian[0] * READ_CELLS(half_blurred + x);
-        UNROLL
-        for (int i = 1; i <= 4; i++)
-            sum += gaussian[i] * (READ_CELLS(half_blurred + x - i) + READ_CELLS(half_blurred + x + i));
-        CELLS(blurred + x) = sum;
-    }
-    mirror_ends(blurred, width);
+    return mean_of(near, mean_of(mean_of(far, here), here));
+}
+
+/* The blurred colour's row y in 8ths of its unit, sides mirrored. */
+INLINE void blur_row(__global const short *small, int y, int height, __global ushort *half_blurred,
+                     __global ushort *blurred, int width, int stride)
+{
+#define SOURCE(i) (READ_USHORTS(small + (size_t)reflect(y + (i), height) * stride + x) << (ushort)3)
+    for (int x = 0; x < width; x += 16)
+        USHORTS(half_blurred + x) = binomial(SOURCE(0), mean_of(SOURCE(-1), SOURCE(1)), mean_of(SOURCE(-2), SOURCE(2)));
+    mirror_short_ends((__global short *)half_blurred, width);
+#define HALF_BLURRED(i) READ_USHORTS(half_blurred + x + (i))
+    for (int x = 0; x < width; x += 16)
+        USHORTS(blurred + x) = binomial(HALF_BLURRED(0), mean_of(HALF_BLURRED(-1), HALF_BLURRED(1)),
+                                        mean_of(HALF_BLURRED(-2), HALF_BLURRED(2)));
+    mirror_short_ends((__global short *)blurred, width);
 }
 
 /* F1 before it is smoothed along z: the mean over the colours of SML with taps 2 apart, in a box. One work-item takes
- * `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each. */
-__kernel void coarse_focus(__global const short *small, __global short *focus, __global float *scratch, int width,
+ * `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each.
+ *
+ * A blurred colour is in 1/(8 COLOUR_ONE) DN, the half of its SML at most 9/8 of 255 DN; SML of all colours is kept in
+ * 1/4 DN, seven of which fit 16 bits. */
+__kernel void coarse_focus(__global const short *small, __global short *focus, __global ushort *scratch, int width,
                            int height, int stride, int strip)
 {
     const int z = (int)get_global_id(2), first = (int)get_global_id(1) * strip, last = min(first + strip, height);
     const int top = max(first - COARSE_BOX, 0), bottom = min(last + COARSE_BOX, height);
     const int blurred_top = max(top - 2, 0), blurred_bottom = min(bottom + 2, height);
     const size_t picture = (size_t)height * stride;
-    __global float *blurred =
+    __global ushort *blurred =
         scratch + (get_global_id(2) * get_global_size(1) + get_global_id(1)) * 2 * (strip + 10) * (size_t)stride + SIDE;
-    __global float *sharpness = blurred + (strip + 10) * (size_t)stride, *spare = sharpness + (strip + 8) * (size_t)stride;
+    __global ushort *sharpness = blurred + (strip + 10) * (size_t)stride, *spare = sharpness + (strip + 8) * (size_t)stride;
 
     for (int colour = 0; colour < 3; colour++) {
         for (int y = blurred_top; y < blurred_bottom; y++)
             blur_row(small + (3 * z + colour) * picture + SIDE, y, height, spare,
                      blurred + (size_t)(y - blurred_top) * stride, width, stride);
         for (int y = top; y < bottom; y++) {
-            __global const float *row = blurred + (size_t)(y - blurred_top) * stride;
-            __global const float *above = blurred + (size_t)(clamp(mirror(y - 2, height), 0, height - 1) - blurred_top) * stride;
-            __global const float *below = blurred + (size_t)(clamp(mirror(y + 2, height), 0, height - 1) - blurred_top) * stride;
-            __global float *out = sharpness + (size_t)(y - top) * stride;
-            for (int x = 0; x < width; x += 8) {
-                const float8 twice = 2.0f * READ_CELLS(row + x);
-                const float8 sml = fabs(twice - READ_CELLS(row + x - 2) - READ_CELLS(row + x + 2)) +
-                                   fabs(twice - READ_CELLS(above + x) - READ_CELLS(below + x));
-                CELLS(out + x) = colour == 0 ? sml : READ_CELLS(out + x) + sml;
+            __global const ushort *row = blurred + (size_t)(y - blurred_top) * stride;
+            __global const ushort *above = blurred + (size_t)(clamp(mirror(y - 2, height), 0, height - 1) - blurred_top) * stride;
+            __global const ushort *below = blurred + (size_t)(clamp(mirror(y + 2, height), 0, height - 1) - blurred_top) * stride;
+            __global ushort *out = sharpness + (size_t)(y - top) * stride;
+            for (int x = 0; x < width; x += 16) {
+                const ushort16 here = READ_USHORTS(row + x);
+                const ushort16 half_sml =
+                    difference(here, mean_of(READ_USHORTS(row + x - 2), READ_USHORTS(row + x + 2))) +
+                    difference(here, mean_of(READ_USHORTS(above + x), READ_USHORTS(below + x)));
+                const ushort16 sum = (half_sml >> (ushort)1) + (colour == 0 ? (ushort16)0 : READ_USHORTS(out + x));
+                USHORTS(out + x) = colour == 2 ? (sum + (ushort)4) >> (ushort)3 : sum;
             }
             if (colour == 2)
-                mirror_ends(out, width);
+                mirror_short_ends((__global short *)out, width);
         }
     }
-    const float unit = (float)FOCUS_ONE / COLOUR_ONE / 3 / ((2 * COARSE_BOX + 1) * (2 * COARSE_BOX + 1));
     for (int y = first; y < last; y++) {
-        for (int x = -8; x < width + 8; x += 8) {
-            float8 sum = 0.0f;
+        __global const ushort *rows[2 * COARSE_BOX + 1];
+        for (int j = -COARSE_BOX; j <= COARSE_BOX; j++)
+            rows[j + COARSE_BOX] = sharpness + (size_t)(reflect(y + j, height) - top) * stride;
+        for (int x = -16; x < width + 16; x += 16) {
+            ushort16 sum = 0;
             UNROLL
-            for (int j = -COARSE_BOX; j <= COARSE_BOX; j++)
-                sum += READ_CELLS(sharpness + (size_t)(reflect(y + j, height) - top) * stride + x);
-            CELLS(spare + x) = unit * sum;
+            for (int j = 0; j < 2 * COARSE_BOX + 1; j++)
+                sum += READ_USHORTS(rows[j] + x);
+            USHORTS(spare + x) = PART_OF(sum, 65536 / (2 * COARSE_BOX + 1));
         }
-        for (int x = 0; x < width; x += 8) {
-            float8 sum = 0.0f;
+        for (int x = 0; x < width; x += 16) {
+            ushort16 sum = 0;
             UNROLL
             for (int i = -COARSE_BOX; i <= COARSE_BOX; i++)
-                sum += READ_CELLS(spare + x + i);
-            HALF_SHORTS(focus + z * picture + (size_t)y * stride + SIDE + x) = to_shorts(sum);
+                sum += READ_USHORTS(spare + x + i);
+            SHORTS(focus + z * picture + (size_t)y * stride + SIDE + x) =
+                as_short16(PART_OF(sum, 65536 * FOCUS_ONE / 4 / 3 / (2 * COARSE_BOX + 1)));
         }
     }
 }

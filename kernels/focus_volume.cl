@@ -28,12 +28,9 @@
 #define COLUMNS (2 * RING + 3)
 #define SCRATCH_ROWS (2 * RING + 4)
 
-typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 typedef uchar16 uchar16_anywhere __attribute__((aligned(1)));
 
 #define READ_BYTES(pointer) convert_short16(*(__global const uchar16_anywhere *)(pointer))
-#define USHORTS(pointer) (*(__global ushort16_anywhere *)(pointer))
-#define READ_USHORTS(pointer) (*(__global const ushort16_anywhere *)(pointer))
 
 /* So that WEIGHTS of them fit 16 bits. */
 #define LARGEST_SML (65535 / WEIGHTS)

@@ -31,11 +31,27 @@ typedef float8 float8_anywhere __attribute__((aligned(4)));
 
 typedef short8 short8_anywhere __attribute__((aligned(2)));
 typedef short16 short16_anywhere __attribute__((aligned(2)));
+typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 #define SHORTS(pointer) (*(__global short16_anywhere *)(pointer))
 #define READ_SHORTS(pointer) (*(__global const short16_anywhere *)(pointer))
+#define USHORTS(pointer) (*(__global ushort16_anywhere *)(pointer))
+#define READ_USHORTS(pointer) (*(__global const ushort16_anywhere *)(pointer))
 #define HALF_SHORTS(pointer) (*(__global short8_anywhere *)(pointer))
 #define READ_HALF_SHORTS(pointer) (*(__global const short8_anywhere *)(pointer))
 #define READ_SHORT_CELLS(pointer) convert_float8(READ_HALF_SHORTS(pointer))
+
+/* (a + b) / 2, halves rounded up; |a - b|; a part / 65536, rounded down: one or two instructions on CPUs. */
+INLINE ushort16 mean_of(ushort16 a, ushort16 b)
+{
+    return convert_ushort16((convert_uint16(a) + convert_uint16(b) + 1u) >> 1u);
+}
+
+INLINE ushort16 difference(ushort16 a, ushort16 b)
+{
+    return max(a, b) - min(a, b);
+}
+
+#define PART_OF(a, part) convert_ushort16((convert_uint16(a) * (uint)(part)) >> 16u)
 
 /* Rounds v >= -32768. */
 INLINE short8 to_shorts(float8 v)

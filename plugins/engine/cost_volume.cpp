@@ -27,7 +27,7 @@ CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
       largest_coarse_range_(queue.allocate(sizeof(cl_float))), cost_(low.allocate_shorts(queue, low.planes)),
       guess_(low.allocate_shorts(queue, 1)), coarse_(low.allocate_shorts(queue, low.planes)),
       scratch_(low.allocate_rows(queue, fine_rows(low), sizeof(cl_short))),
-      coarse_scratch_(low.allocate_rows(queue, coarse_rows(low), sizeof(cl_float)))
+      coarse_scratch_(low.allocate_rows(queue, coarse_rows(low), sizeof(cl_ushort)))
 {
     const Program program(queue.device(), "cost_volume");
     find_evidence_ = program.kernel("evidence");
@@ -42,7 +42,7 @@ CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
 uint64_t CostVolume::scratch_bytes(const LowShape &low)
 {
     return static_cast<uint64_t>(low.stride) *
-           (fine_rows(low) * sizeof(cl_short) + coarse_rows(low) * sizeof(cl_float));
+           (fine_rows(low) * sizeof(cl_short) + coarse_rows(low) * sizeof(cl_ushort));
 }
 
 void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise)

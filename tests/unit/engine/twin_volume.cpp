@@ -180,14 +180,7 @@ Volume fine_cost(const Volume &focus, float median_top)
 
 Volume coarse_focus(const Colours &small)
 {
-    std::vector<float> taps;
-    float sum = 0.0f;
-    for (int i = 0; i <= 4; i++) {
-        taps.push_back(std::exp(-0.5f * i * i));
-        sum += i == 0 ? taps[i] : 2.0f * taps[i];
-    }
-    for (float &tap : taps)
-        tap /= sum;
+    const std::vector<float> taps{6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
     Volume result(small[0].width, small[0].height, small[0].planes);
     for (const Volume &colour : small) {
         const Volume response = sml(filter(colour, taps, reflect), 2, reflect, mirror);
