@@ -21,6 +21,7 @@
 #include "aifcompose.h"
 
 #include "aif_picture.h"
+#include "engine_caps.h"
 #include "gstcl/depth_composer.h"
 
 #include <gst/dff/dff.h>
@@ -45,12 +46,14 @@ static GType gst_aif_blend_get_type()
     return type;
 }
 
-static GstStaticPadTemplate stack_template = GST_STATIC_PAD_TEMPLATE(
-    "stack", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_MAKE));
+static GstStaticPadTemplate stack_template =
+    GST_STATIC_PAD_TEMPLATE("stack", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENGINE_STACK_CAPS));
 static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
     "depth", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
-static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE(GST_FOCAL_STACK_FORMATS)));
+static GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS,
+                            GST_STATIC_CAPS("video/x-raw, format = (string) " GST_FOCAL_STACK_FORMATS
+                                            ", " ENGINE_SIZES ", framerate = (fraction) [ 0, max ]"));
 
 namespace {
 

@@ -23,6 +23,7 @@
 
 #include "depth_statistics.h"
 #include "dffdepth_properties.h"
+#include "engine_caps.h"
 #include "gstcl/device_context.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
@@ -74,17 +75,11 @@ struct _GstDffDepth {
 G_DEFINE_FINAL_TYPE(GstDffDepth, gst_dff_depth, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(dffdepth, "dffdepth", GST_RANK_NONE, GST_TYPE_DFF_DEPTH)
 
-#define STACK_CAPS                                                                                           \
-    GST_FOCAL_STACK_CAPS_NAME                                                                                \
-    ", format = (string) " GST_FOCAL_STACK_FORMATS                                                           \
-    ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ], planes = (int) [ 2, 64 ]"                    \
-    ", framerate = (fraction) [ 0, max ]"
 #define MAP_CAPS(format)                                                                                     \
-    "video/x-raw, format = (string) " format ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"     \
-    ", framerate = (fraction) [ 0, max ]"
+    "video/x-raw, format = (string) " format ", " ENGINE_SIZES ", framerate = (fraction) [ 0, max ]"
 
 static GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(STACK_CAPS));
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENGINE_STACK_CAPS));
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(MAP_CAPS("GRAY16_LE")));
 static GstStaticPadTemplate sparse_template =

@@ -20,7 +20,7 @@ public:
         Sharp,  /* the sharper ones of the planes around the depth: forgives planes far apart */
     };
 
-    /* Throws EngineError. */
+    /* Pictures have 64x64 pixels or more. Throws EngineError. */
     AifComposer(std::shared_ptr<Device> device, const StackShape &shape);
 
     /* What the pixels of the depth maps mean from now on; DepthEncoder::index() until then. */

@@ -203,3 +203,12 @@ TEST(AifCompose, depth_of_another_size_is_an_error_that_names_both)
     EXPECT_NE(outcome.error.find("64x48"), std::string::npos) << outcome.error;
     EXPECT_NE(outcome.error.find("128x96"), std::string::npos) << outcome.error;
 }
+
+TEST(AifCompose, pictures_too_small_for_the_kernels_are_refused)
+{
+    const std::string pictures = "videotestsrc num-buffers=2 ! video/x-raw,width=33,height=64,format=";
+    const Outcome outcome = run(pictures + "GRAY8 ! lenssweeptag planes=2 ! focalstackmux ! c.stack  " +
+                                pictures + "GRAY16_LE ! c.depth  aifcompose name=c ! fakesink");
+    EXPECT_FALSE(outcome.end_of_stream);
+    EXPECT_FALSE(outcome.error.empty());
+}
