@@ -114,7 +114,7 @@ __kernel void hide(__global const uchar4 *color, __global const float *height, _
         const int a = left < 0 ? right : left, b = right < 0 ? left : right;
         const float4 left_color = convert_float4(color[mirrored(height, width, x, a, step)]);
         const float4 right_color = convert_float4(color[mirrored(height, width, x, b, step)]);
-        hidden_color[x] = convert_uchar4_sat_rte(mix(right_color, left_color, from_left));
+        hidden_color[x] = convert_uchar4(mix(right_color, left_color, from_left) + 0.5f);
         hidden_height[x] = mix(height[b], height[a], from_left);
     }
 }

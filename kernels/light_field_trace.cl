@@ -7,12 +7,15 @@
  * below the surface: near surfaces win, and between two pixels the crossing is found by linear interpolation. Where the
  * surface steps up by more than `step` there is none between the pixels: the ray goes behind the near one and looks at the
  * hidden layer until that stops it or it comes out again; within TOUCH pixels of the near one's place it still meets that.
+ * Blocks of pixels that it flies over as a whole, by the roof above them, are left out.
  */
+#include "light_field_roof.cl"
+
 #define TOUCH 1e-3f
 
 typedef struct {
     __global const uchar4 *color, *hidden_color;
-    __global const float *height, *hidden_height;
+    __global const float *height, *hidden_height, *roof;
     int2 size;
     float2 heights; /* least and greatest */
     float step;
@@ -29,45 +32,90 @@ inline float4 color_at(__global const uchar4 *picture, int2 size, float2 point)
                mix(convert_float4(lower[a.x]), convert_float4(lower[b.x]), t.x), t.y);
 }
 
+/* The way of a ray over the pixels: at the height q it is over the pixel i = start + lean q of its longer axis. As it falls,
+ * u = i ^ turn grows. */
+typedef struct {
+    float start, lean, beside, aside; /* origin and slope along the longer axis, and across it */
+    float fall;                       /* from pixel to pixel */
+    int turn;
+    int2 strides, roof_strides; /* along and across */
+    int last_along;
+    float last_across;
+} Way;
+
+inline Way make_way(int2 size, float2 origin, float2 slope)
+{
+    const bool along_x = fabs(slope.x) >= fabs(slope.y);
+    const int blocks = BLOCKS(size.x);
+    const float lean = along_x ? slope.x : slope.y;
+    const Way way = {along_x ? origin.x : origin.y, lean, along_x ? origin.y : origin.x, along_x ? slope.y : slope.x,
+                     1.0f / fabs(lean), lean > 0.0f ? -1 : 0, along_x ? (int2)(1, size.x) : (int2)(size.x, 1),
+                     along_x ? (int2)(1, blocks) : (int2)(blocks, 1), along_x ? size.x - 1 : size.y - 1,
+                     along_x ? size.y - 1 : size.x - 1};
+    return way;
+}
+
+inline int across_at(const Way *way, float q)
+{
+    return (int)clamp(way->beside + way->aside * q + 0.5f, 0.0f, way->last_across);
+}
+
+inline int along_at(const Way *way, int u)
+{
+    return clamp(u ^ way->turn, 0, way->last_along);
+}
+
+inline int pixel_at(const Way *way, int u, float q)
+{
+    return along_at(way, u) * way->strides.x + across_at(way, q) * way->strides.y;
+}
+
+/* Nothing in the block that begins with u is higher, where the ray falls from q to q_end. */
+inline float roof_over(const Layers *layers, const Way *way, int u, float q, float q_end)
+{
+    __global const float *roof = layers->roof + (along_at(way, u) >> BLOCK_BITS) * way->roof_strides.x;
+    return max(roof[(across_at(way, q) >> BLOCK_BITS) * way->roof_strides.y],
+               roof[(across_at(way, q_end) >> BLOCK_BITS) * way->roof_strides.y]);
+}
+
 /* The colour that the ray sees, 0..255. */
 inline float4 trace(const Layers *layers, float2 origin, float2 slope)
 {
-    const bool along_x = fabs(slope.x) >= fabs(slope.y);
-    const float lean = along_x ? slope.x : slope.y, start = along_x ? origin.x : origin.y;
-    const float least = layers->heights.x, greatest = layers->heights.y;
-    if (fabs(lean) * (greatest - least) < 1e-3f)
+    const Way way = make_way(layers->size, origin, slope);
+    const float least = layers->heights.x, greatest = layers->heights.y, length = fabs(way.lean) * (greatest - least);
+    if (length < 1e-3f)
         return color_at(layers->color, layers->size, origin + slope * least);
 
-    const int direction = lean > 0.0f ? -1 : 1;
-    const float entry = start + lean * greatest;
-    const int first = direction < 0 ? (int)ceil(entry) : (int)floor(entry);
-    const int steps = (int)(fabs(lean) * (greatest - least)) + 2;
-    const float fall = 1.0f / fabs(lean); /* of the ray, a pixel */
-    const int stride = layers->size.x, last_along = (along_x ? layers->size.x : layers->size.y) - 1;
-    const float last_across = (along_x ? layers->size.y : layers->size.x) - 1;
-    const float beside = along_x ? origin.y : origin.x, aside = along_x ? slope.y : slope.x;
-
-    float q = (first - start) / lean, below = -INFINITY;
+    const float entry = way.start + way.lean * greatest;
+    const int first = (int)(way.turn ? ceil(entry) : floor(entry)) ^ way.turn, last = first + (int)length + 2;
     bool behind = false;
-    for (int k = 0; k <= steps; k++, q -= fall) {
-        const int along = clamp(first + direction * k, 0, last_along);
-        const int across = (int)clamp(beside + aside * q + 0.5f, 0.0f, last_across);
-        const size_t i = along_x ? (size_t)across * stride + along : (size_t)along * stride + across;
-        const float height = layers->height[i];
-        if (q > height) {
+    for (int block = first & -BLOCK; block <= last; block += BLOCK) {
+        float q = ((block ^ way.turn) - way.start) / way.lean;
+        const float q_end = q - (BLOCK - 1) * way.fall;
+        if (q_end > roof_over(layers, &way, block, q, q_end)) {
             behind = false;
-        } else if (behind || (k > 0 && height - below > layers->step && (height - q) * fabs(lean) > TOUCH)) {
-            behind = true;
-            if (q <= layers->hidden_height[i] || k == steps)
-                return layers->fill ? color_at(layers->hidden_color, layers->size, origin + slope * layers->hidden_height[i])
-                                    : (float4)(0.0f);
-        } else {
-            /* The ray was `above` the pixel before and is `under` this one. */
-            const float above = q + fall - below, under = height - q;
-            const float crossing = k > 0 ? q + fall * under / (above + under) : q;
-            return color_at(layers->color, layers->size, origin + slope * crossing);
+            continue;
         }
-        below = height;
+        for (int u = block; u < block + BLOCK; u++, q -= way.fall) {
+            const int pixel = pixel_at(&way, u, q);
+            const float height = layers->height[pixel];
+            if (q > height) {
+                behind = false;
+                continue;
+            }
+            const float below = layers->height[pixel_at(&way, u - 1, q + way.fall)];
+            if (behind || (height - below > layers->step && (height - q) * fabs(way.lean) > TOUCH)) {
+                behind = true;
+                const float hidden = layers->hidden_height[pixel];
+                if (q <= hidden || u >= last)
+                    return layers->fill ? color_at(layers->hidden_color, layers->size, origin + slope * hidden)
+                                        : (float4)(0.0f);
+                continue;
+            }
+            /* The ray was `above` the pixel before and is `under` this one. */
+            const float above = q + way.fall - below, under = height - q;
+            return color_at(layers->color, layers->size, origin + slope * (q + way.fall * under / (above + under)));
+        }
     }
     return color_at(layers->color, layers->size, origin + slope * least);
 }
@@ -88,5 +136,5 @@ inline void put_color(__global uchar *pixel, int channels, float4 color)
 /* The arguments that every kernel takes, and the layers of them. */
 #define LAYERS                                                                                                            \
     __global const uchar4 *color, __global const float *height, __global const uchar4 *hidden_color,                       \
-        __global const float *hidden_height, int2 size, float2 heights, float step, int fill
-#define MAKE_LAYERS {color, hidden_color, height, hidden_height, size, heights, step, fill}
+        __global const float *hidden_height, __global const float *roof, int2 size, float2 heights, float step, int fill
+#define MAKE_LAYERS {color, hidden_color, height, hidden_height, roof, size, heights, step, fill}

@@ -33,6 +33,14 @@ cl_int2 columns_of(const LightFieldGeometry &geometry)
              std::clamp(first + count + beside, 1, geometry.layers.x)}};
 }
 
+/* Columns and rows of light_field_roof.cl. */
+std::pair<size_t, size_t> roof_size(glm::ivec2 size)
+{
+    constexpr size_t block = 16;
+    return {(static_cast<size_t>(size.x) + block - 1) / block,
+            (static_cast<size_t>(size.y) + block - 1) / block};
+}
+
 } // namespace
 
 cl_float2 to_float2(glm::dvec2 vector)
@@ -59,9 +67,12 @@ LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size, Picture
     height_of_depth_ = program.kernel("height_of_depth");
     fill_unknown_ = program.kernel("fill_unknown");
     hide_ = program.kernel("hide");
+    raise_roof_ = Program(queue.device(), "light_field_roof").kernel("raise_roof");
     const size_t pixels = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
     for (cl::Buffer *buffer : {&color_, &height_, &hidden_color_, &hidden_height_, &grounds_})
         *buffer = queue.allocate(4 * pixels);
+    const auto [roof_columns, roof_rows] = roof_size(size);
+    roof_ = queue.allocate(roof_columns * roof_rows * sizeof(cl_float));
 }
 
 void LightFieldLayers::shrink_color(const ColorAndDepth &pictures, cl_int2 columns)
@@ -96,12 +107,19 @@ void LightFieldLayers::run(const ColorAndDepth &pictures, const cl::Buffer &posi
                       step_of(geometry), reach_of(geometry));
 }
 
+void LightFieldLayers::raise_roof(const LightFieldGeometry &geometry)
+{
+    const auto [columns, rows] = roof_size(size_);
+    queue_.begin_stage("roof");
+    queue_.run(raise_roof_, {columns, rows}, height_, to_int2(size_), columns_of(geometry), roof_);
+}
+
 cl_uint LightFieldLayers::set_arguments(cl::Kernel &kernel, const LightFieldGeometry &geometry,
                                         bool fill) const
 {
     const cl_float2 heights = to_float2({geometry.lowest, geometry.lowest + geometry.range});
     cl_uint index = 0;
-    for (const cl::Buffer *buffer : {&color_, &height_, &hidden_color_, &hidden_height_})
+    for (const cl::Buffer *buffer : {&color_, &height_, &hidden_color_, &hidden_height_, &roof_})
         kernel.setArg(index++, *buffer);
     kernel.setArg(index++, to_int2(size_));
     kernel.setArg(index++, heights);

@@ -28,6 +28,9 @@ public:
     /* positions: float[65536], the place in the sweep of each depth pixel, 0 near to 1 far, NAN unknown. */
     void run(const ColorAndDepth &pictures, const cl::Buffer &positions, const LightFieldGeometry &geometry);
 
+    /* For kernels that trace rays one by one. */
+    void raise_roof(const LightFieldGeometry &geometry);
+
     /* Sets the arguments that each tracing kernel begins with and returns how many these are. */
     cl_uint set_arguments(cl::Kernel &kernel, const LightFieldGeometry &geometry, bool fill) const;
 
@@ -39,8 +42,8 @@ private:
     bool in_rows_;
     cl_int sums_size_;
     cl::Buffer sums_; /* of shrinking in rows */
-    cl::Kernel shrink_color_, height_of_depth_, fill_unknown_, hide_;
-    cl::Buffer color_, height_, hidden_color_, hidden_height_, grounds_;
+    cl::Kernel shrink_color_, height_of_depth_, fill_unknown_, hide_, raise_roof_;
+    cl::Buffer color_, height_, hidden_color_, hidden_height_, grounds_, roof_;
 };
 
 cl_float2 to_float2(glm::dvec2 vector);

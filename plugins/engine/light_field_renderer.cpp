@@ -33,11 +33,16 @@ constexpr unsigned pitch_of(unsigned width)
     return (width + 31) / 16 * 16;
 }
 
-/* Whether rows are rendered as a whole, without a search, or rays one by one. */
+/* Whether a work-item renders rows. */
 bool in_rows(const Device &device, LightFieldLayout layout)
 {
-    return device.kernel_style() == KernelStyle::Tiles && layout != LightFieldLayout::Elemental &&
-           layout != LightFieldLayout::Rgbd;
+    return device.kernel_style() == KernelStyle::Tiles && layout != LightFieldLayout::Rgbd;
+}
+
+/* Whether rays are followed to where they meet the relief; else that is found without a search. */
+bool follows_rays(const Device &device, LightFieldLayout layout)
+{
+    return !in_rows(device, layout) || layout == LightFieldLayout::Elemental;
 }
 
 cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
@@ -49,7 +54,8 @@ cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
         return in_rows(device, layout) ? Program(device, "light_field_lenses").kernel("lenticular_rows")
                                        : Program(device, "light_field_panel").kernel("lenticular");
     case LightFieldLayout::Elemental:
-        return Program(device, "light_field_panel").kernel("elemental");
+        return in_rows(device, layout) ? Program(device, "light_field_rays").kernel("elemental_rows")
+                                       : Program(device, "light_field_panel").kernel("elemental");
     default:
         return in_rows(device, layout) ? Program(device, "light_field_rows").kernel("view_rows")
                                        : Program(device, "light_field_views").kernel("views");
@@ -125,7 +131,7 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
         slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
         queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),
                                              slopes.data());
-        if (in_rows(*device_, parameters.layout))
+        if (!follows_rays(*device_, parameters.layout))
             prepare_rows();
     });
 }
@@ -164,6 +170,8 @@ void LightFieldRenderer::render(const Rows &color, const Rows &depth, std::span<
             copy_rgbd(pictures, target);
         } else {
             layers_->run(pictures, positions_, geometry_);
+            if (follows_rays(*device_, parameters_.layout))
+                layers_->raise_roof(geometry_);
             trace(target);
         }
         if (!device_->works_in_place())

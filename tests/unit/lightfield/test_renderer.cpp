@@ -201,7 +201,11 @@ TEST(Renderer, both_kinds_of_kernels_show_the_same_when_views_are_small)
     LightFieldParameters panel;
     panel.layout = LightFieldLayout::Lenticular;
     panel.sheet = {11.3, 0.17, 0.1, false, false, true, false};
-    for (const LightFieldParameters &parameters : {quilt, panel}) {
+    LightFieldParameters array;
+    array.layout = LightFieldLayout::Elemental;
+    array.lenses.pitch = 6.3;
+    array.lenses.grid = LensGrid::Hexagonal;
+    for (const LightFieldParameters &parameters : {quilt, panel, array}) {
         const PictureSize output{4 * 37, 3 * 61};
         const std::vector<uint8_t> by_pixels = render(picture, output, parameters, KernelStyle::Pixels);
         const std::vector<uint8_t> by_rows = render(picture, output, parameters, KernelStyle::Tiles);
