@@ -17,11 +17,11 @@
 #include "low_picture.cl"
 
 /* F at plane z; `cells` are those of plane 0, `plane` apart. */
-INLINE float8 smooth_focus(__global const short *cells, size_t plane, int z, int planes, float side, float centre)
+INLINE float16 smooth_focus(__global const short *cells, size_t plane, int z, int planes, float side, float centre)
 {
-    return side * (READ_SHORT_CELLS(cells + max(z - 1, 0) * plane) +
-                   READ_SHORT_CELLS(cells + min(z + 1, planes - 1) * plane)) +
-           centre * READ_SHORT_CELLS(cells + z * plane);
+    return side * (READ_WIDE_SHORTS(cells + max(z - 1, 0) * plane) +
+                   READ_WIDE_SHORTS(cells + min(z + 1, planes - 1) * plane)) +
+           centre * READ_WIDE_SHORTS(cells + z * plane);
 }
 
 #define SIDE_WEIGHT(noise) (0.7f * noise->t / (2.0f + 1.4f * noise->t))
@@ -33,19 +33,19 @@ __kernel void evidence(__global const short *focus, __global const Noise *noise,
 {
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
     const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
-    for (int x = 0; x < width; x += 8) {
+    for (int x = 0; x < width; x += 16) {
         __global const short *cells = focus + row + x;
-        float8 before = READ_SHORT_CELLS(cells), here = before, highest = 0.0f, lowest = INFINITY;
+        float16 before = READ_WIDE_SHORTS(cells), here = before, highest = 0.0f, lowest = INFINITY;
         for (int z = 0; z < planes; z++) {
-            const float8 after = READ_SHORT_CELLS(cells + min(z + 1, planes - 1) * plane);
-            const float8 smooth = side * (before + after) + centre * here;
+            const float16 after = READ_WIDE_SHORTS(cells + min(z + 1, planes - 1) * plane);
+            const float16 smooth = side * (before + after) + centre * here;
             highest = max(highest, smooth);
             lowest = min(lowest, smooth);
             before = here;
             here = after;
         }
-        CELLS(top + row + x) = highest;
-        CELLS(range + row + x) = highest - lowest;
+        WIDE(top + row + x) = highest;
+        WIDE(range + row + x) = highest - lowest;
     }
 }
 
@@ -101,10 +101,10 @@ __kernel void summarise(__global const float *first, __global const float *secon
 INLINE void cost_row(__global const short *focus, __global const float *top, size_t plane, int z, int planes, float side,
                      float centre, float floor, __global short *cost, int width)
 {
-    for (int x = 0; x < width; x += 8) {
-        const float8 highest = READ_CELLS(top + x);
-        const float8 focused = smooth_focus(focus + x, plane, z, planes, side, centre);
-        HALF_SHORTS(cost + x) = to_shorts(COST_ONE * (highest - focused) / (highest + floor));
+    for (int x = 0; x < width; x += 16) {
+        const float16 highest = READ_WIDE(top + x);
+        const float16 focused = smooth_focus(focus + x, plane, z, planes, side, centre);
+        SHORTS(cost + x) = to_wide_shorts(COST_ONE * (highest - focused) / (highest + floor));
     }
     mirror_short_ends(cost, width);
 }
@@ -167,7 +167,8 @@ INLINE void blur_row(__global const short *small, int y, int height, __global us
 {
 #define SOURCE(i) (READ_USHORTS(small + (size_t)reflect(y + (i), height) * stride + x) << (ushort)3)
     for (int x = 0; x < width; x += 16)
-        USHORTS(half_blurred + x) = binomial(SOURCE(0), mean_of(SOURCE(-1), SOURCE(1)), mean_of(SOURCE(-2), SOURCE(2)));
+        USHORTS(half_blurred + x) =
+            binomial(SOURCE(0), mean_of(SOURCE(-1), SOURCE(1)), mean_of(SOURCE(-2), SOURCE(2)));
     mirror_short_ends((__global short *)half_blurred, width);
 #define HALF_BLURRED(i) READ_USHORTS(half_blurred + x + (i))
     for (int x = 0; x < width; x += 16)
@@ -190,7 +191,8 @@ __kernel void coarse_focus(__global const short *small, __global short *focus, _
     const size_t picture = (size_t)height * stride;
     __global ushort *blurred =
         scratch + (get_global_id(2) * get_global_size(1) + get_global_id(1)) * 2 * (strip + 10) * (size_t)stride + SIDE;
-    __global ushort *sharpness = blurred + (strip + 10) * (size_t)stride, *spare = sharpness + (strip + 8) * (size_t)stride;
+    __global ushort *sharpness = blurred + (strip + 10) * (size_t)stride;
+    __global ushort *spare = sharpness + (strip + 8) * (size_t)stride;
 
     for (int colour = 0; colour < 3; colour++) {
         for (int y = blurred_top; y < blurred_bottom; y++)
@@ -198,8 +200,10 @@ __kernel void coarse_focus(__global const short *small, __global short *focus, _
                      blurred + (size_t)(y - blurred_top) * stride, width, stride);
         for (int y = top; y < bottom; y++) {
             __global const ushort *row = blurred + (size_t)(y - blurred_top) * stride;
-            __global const ushort *above = blurred + (size_t)(clamp(mirror(y - 2, height), 0, height - 1) - blurred_top) * stride;
-            __global const ushort *below = blurred + (size_t)(clamp(mirror(y + 2, height), 0, height - 1) - blurred_top) * stride;
+            const int row_above = clamp(mirror(y - 2, height), 0, height - 1),
+                      row_below = clamp(mirror(y + 2, height), 0, height - 1);
+            __global const ushort *above = blurred + (size_t)(row_above - blurred_top) * stride;
+            __global const ushort *below = blurred + (size_t)(row_below - blurred_top) * stride;
             __global ushort *out = sharpness + (size_t)(y - top) * stride;
             for (int x = 0; x < width; x += 16) {
                 const ushort16 here = READ_USHORTS(row + x);
@@ -246,11 +250,11 @@ __kernel void add_coarse_cost(__global const short *focus, __global const float 
     const float silence = 0.5f * (fine_medians[1] + 2.0f) * FOCUS_ONE, floor = 4.0f * (medians[1] + 0.5f) * FOCUS_ONE;
     const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise), share = (2.0f - noise->t) * COST_ONE;
     __global short *costs = cost + z * plane + row;
-    for (int x = 0; x < width; x += 8) {
-        const float8 silent = silence / (READ_CELLS(fine_range + row + x) + silence); /* 1 - k0 */
-        const float8 coarse = (READ_CELLS(top + row + x) - smooth_focus(focus + row + x, plane, z, planes, side, centre)) /
-                              (READ_CELLS(range + row + x) + floor);
-        HALF_SHORTS(costs + x) += to_shorts(share * silent * silent * coarse);
+    for (int x = 0; x < width; x += 16) {
+        const float16 silent = silence / (READ_WIDE(fine_range + row + x) + silence); /* 1 - k0 */
+        const float16 focused = smooth_focus(focus + row + x, plane, z, planes, side, centre);
+        const float16 coarse = (READ_WIDE(top + row + x) - focused) / (READ_WIDE(range + row + x) + floor);
+        SHORTS(costs + x) += to_wide_shorts(share * silent * silent * coarse);
     }
     mirror_short_ends(costs, width);
 }

@@ -11,6 +11,7 @@
 
 #define REACH 3.5f    /* times s: weights beyond are below 0.3 % */
 #define DENOISED 0.3f /* DN of noise above which the guide is filtered */
+#define NOISY_ONE 64  /* of a DN, in the guide to be filtered */
 
 /* Sorts the least to the front and the greatest to the end. */
 INLINE void part_extremes(short16 *values, int count)
@@ -59,81 +60,146 @@ __kernel void median_5x5(__global const short *u, __global float *median, int wi
     mirror_ends(out, width);
 }
 
-/* nearer = min_3x3(u), guide[colour] = A before the bilateral filter, which goes to `silent_guide` where there will be
- * none. All sides are mirrored, before and after. Work-items (1, low height). */
+/* nearer = min_3x3(u), guide[colour] = A before the bilateral filter, which reads it from `noisy`. All sides are mirrored,
+ * before and after. Work-items (1, low height). */
 __kernel void blend_planes(__global const short *small, __global const float *u, __global const Noise *noise,
-                           __global float *nearer, __global float *guide, __global float *silent_guide, int width,
-                           int stride, int planes)
+                           __global float *nearer, __global float *guide, __global short *noisy, int width, int stride,
+                           int planes)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t row = (size_t)y * stride + SIDE, picture = (size_t)height * stride;
     const float s = 0.6f + 0.3f * noise->t, steepness = -1.0f / (2.0f * s * s), reach = REACH * s;
     __global const float *above = u + (size_t)reflect(y - 1, height) * stride + SIDE, *here = u + row,
                          *below = u + (size_t)reflect(y + 1, height) * stride + SIDE;
-    __global float *out = (noise->sigma > DENOISED ? guide : silent_guide) + row;
-    for (int x = 0; x < width; x += 8) {
-        float8 position = INFINITY;
+    __global float *out = guide + row;
+    __global short *copy = noisy + row;
+    for (int x = 0; x < width; x += 16) {
+        float16 position = INFINITY;
         UNROLL
         for (int i = -1; i <= 1; i++)
-            position = min(min(position, READ_CELLS(above + x + i)),
-                           min(READ_CELLS(here + x + i), READ_CELLS(below + x + i)));
-        CELLS(nearer + row + x) = position;
+            position = min(min(position, READ_WIDE(above + x + i)),
+                           min(READ_WIDE(here + x + i), READ_WIDE(below + x + i)));
+        WIDE(nearer + row + x) = position;
 
-        float8 weights = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f;
+        float16 weights = 0.0f, red = 0.0f, green = 0.0f, blue = 0.0f;
         for (int z = 0; z < planes; z++) {
-            const float8 distance = z - position;
+            const float16 distance = z - position;
             if (!any_of(fabs(distance) < reach))
                 continue;
-            const float8 weight = quick_exp(steepness * distance * distance);
+            const float16 weight = quick_exp(steepness * distance * distance);
             __global const short *cells = small + 3 * z * picture + row + x;
             weights += weight;
-            red += weight * READ_SHORT_CELLS(cells);
-            green += weight * READ_SHORT_CELLS(cells + picture);
-            blue += weight * READ_SHORT_CELLS(cells + 2 * picture);
+            red += weight * READ_WIDE_SHORTS(cells);
+            green += weight * READ_WIDE_SHORTS(cells + picture);
+            blue += weight * READ_WIDE_SHORTS(cells + 2 * picture);
         }
-        const float8 unit = 1.0f / (COLOUR_ONE * weights);
-        CELLS(out + x) = red * unit;
-        CELLS(out + picture + x) = green * unit;
-        CELLS(out + 2 * picture + x) = blue * unit;
+        const float16 unit = 1.0f / (COLOUR_ONE * weights);
+        const float16 colours[3] = {red * unit, green * unit, blue * unit};
+        UNROLL
+        for (int colour = 0; colour < 3; colour++) {
+            WIDE(out + colour * picture + x) = colours[colour];
+            SHORTS(copy + colour * picture + x) = to_wide_shorts(NOISY_ONE * colours[colour]);
+        }
     }
     mirror_ends(nearer + row, width);
-    for (int colour = 0; colour < 3; colour++)
+    for (int colour = 0; colour < 3; colour++) {
         mirror_ends(out + colour * picture, width);
+        mirror_short_ends(copy + colour * picture, width);
+    }
 }
 
-/* Bilateral filter of radius 4: weights exp(-d^2 / (2 2^2) - e^2 / (2 range^2)), e = |dA|_1. The sides are
- * mirrored, before and after. Work-items (1, low height). */
-__kernel void denoise(__global const float *guide, __global const Noise *noise, __global float *denoised, int width,
+#define RADIUS 4
+#define FARTHEST (RADIUS * RADIUS)
+
+/* 32768 exp(-d^2 / (2 2^2)) by d^2. */
+__constant ushort nearness[FARTHEST + 1] = {32767, 28917, 25519, 22520, 19874, 17539, 15478, 13659, 12054,
+                                            10638, 9388,  8285,  7311,  6452,  5694,  5025,  4435};
+
+/* Products of what varies / 65536, rounded down. */
+#define PRODUCT(a, b) convert_ushort16((convert_uint16(a) * convert_uint16(b)) >> 16u)
+#define SIGNED_PRODUCT(a, b) convert_short16((convert_int16(a) * convert_int16(b)) >> 16)
+
+INLINE ushort16 magnitude(short16 v)
+{
+    return as_ushort16(max(v, -v));
+}
+
+/* e that weighs nothing, without the bits too many to be multiplied, and what makes 65536 of it. */
+typedef struct {
+    ushort limit, spare_bits, steepness;
+} Range;
+
+INLINE Range range_of(float sigma, int scale)
+{
+    const float limit = min(4.0f * NOISY_ONE * 4.0f * sigma / scale, 16383.0f);
+    Range range = {(ushort)limit, (ushort)max(ilogb(limit) - 7, 0), 0};
+    range.steepness = (ushort)(65535.0f * (1 << range.spare_bits) / limit);
+    return range;
+}
+
+/* (1 - (e / (4 range))^2)^8 times the nearness, in 1/32768. */
+INLINE ushort16 weight_of(ushort16 e, Range range, ushort near)
+{
+    const ushort16 share = (min(e, (ushort16)range.limit) >> range.spare_bits) * range.steepness;
+    ushort16 weight = (ushort16)65535 - PRODUCT(share, share);
+    weight = PRODUCT(weight, weight);
+    weight = PRODUCT(weight, weight);
+    weight = PRODUCT(weight, weight);
+    return PART_OF(weight, near);
+}
+
+/* Bilateral filter of radius 4: weights exp(-d^2 / (2 2^2)) (1 - (e / (4 range))^2)^8, which is nearly
+ * exp(-d^2 / (2 2^2) - e^2 / (2 range^2)), e = |dA|_1. The sides of `noisy` are mirrored, and those of `denoised` after.
+ * Work-items (1, low height).
+ *
+ * Weights add up in 1/2048, differences times weights in 1/(NOISY_ONE / 2) DN: what is rounded down there is taken from
+ * the other side for the half of the cells. */
+__kernel void denoise(__global const short *noisy, __global const Noise *noise, __global float *denoised, int width,
                       int stride, int scale)
 {
     if (noise->sigma <= DENOISED)
         return;
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t picture = (size_t)height * stride, row = (size_t)y * stride + SIDE;
-    const float range = 4.0f * noise->sigma / scale, steepness = -1.0f / (2.0f * range * range);
-    const int radius = 4;
-    for (int x = 0; x < width; x += 8) {
-        const float8 red = READ_CELLS(guide + row + x), green = READ_CELLS(guide + picture + row + x),
-                     blue = READ_CELLS(guide + 2 * picture + row + x);
-        float8 weights = 1.0f, red_sum = red, green_sum = green, blue_sum = blue;
+    const Range range = range_of(noise->sigma, scale);
+    for (int x = 0; x < width; x += 16) {
+        short16 here[3], sums[3];
         UNROLL
-        for (int j = -radius; j <= radius; j++)
-            for (int i = -radius; i <= radius; i++) {
-                if (i * i + j * j > radius * radius || (i == 0 && j == 0))
+        for (int colour = 0; colour < 3; colour++) {
+            here[colour] = READ_SHORTS(noisy + colour * picture + row + x);
+            sums[colour] = 0;
+        }
+        ushort16 weights = 2048;
+        UNROLL
+        for (int j = -RADIUS; j <= RADIUS; j++) {
+            __global const short *there = noisy + (size_t)reflect(y + j, height) * stride + SIDE + x;
+            UNROLL
+            for (int i = -RADIUS; i <= RADIUS; i++) {
+                if (i * i + j * j > FARTHEST || (i == 0 && j == 0))
                     continue;
-                __global const float *cells = guide + (size_t)reflect(y + j, height) * stride + SIDE + x + i;
-                const float8 r = READ_CELLS(cells), g = READ_CELLS(cells + picture),
-                             b = READ_CELLS(cells + 2 * picture);
-                const float8 e = fabs(r - red) + fabs(g - green) + fabs(b - blue);
-                const float8 weight = quick_exp(steepness * e * e - (i * i + j * j) / 8.0f);
-                weights += weight;
-                red_sum += weight * r;
-                green_sum += weight * g;
-                blue_sum += weight * b;
+                const bool is_before = j < 0 || (j == 0 && i < 0);
+                short16 differences[3];
+                ushort16 e = 0;
+                UNROLL
+                for (int colour = 0; colour < 3; colour++) {
+                    const short16 other = READ_SHORTS(there + colour * picture + i);
+                    differences[colour] = is_before ? here[colour] - other : other - here[colour];
+                    e += magnitude(differences[colour]);
+                }
+                const ushort16 weight = weight_of(e, range, nearness[i * i + j * j]);
+                weights += weight >> (ushort)4;
+                UNROLL
+                for (int colour = 0; colour < 3; colour++) {
+                    const short16 part = SIGNED_PRODUCT(differences[colour], as_short16(weight));
+                    sums[colour] += is_before ? -part : part;
+                }
             }
-        CELLS(denoised + row + x) = red_sum / weights;
-        CELLS(denoised + picture + row + x) = green_sum / weights;
-        CELLS(denoised + 2 * picture + row + x) = blue_sum / weights;
+        }
+        const float16 unit = 2.0f * 2048.0f / NOISY_ONE / convert_float16(convert_int16(weights));
+        UNROLL
+        for (int colour = 0; colour < 3; colour++)
+            WIDE(denoised + colour * picture + row + x) =
+                convert_float16(here[colour]) / NOISY_ONE + unit * convert_float16(sums[colour]);
     }
     for (int colour = 0; colour < 3; colour++)
         mirror_ends(denoised + colour * picture + row, width);

@@ -29,24 +29,24 @@ INLINE float area(float rim)
 /* Weight of the j-th row from the middle. */
 #define ROW_WEIGHT(j) ((j) == -2 || (j) == 2 ? rim : 1.0f)
 
-INLINE float8 along_row(__global const float *sums, const int radius, float rim)
+INLINE float16 along_row(__global const float *sums, const int radius, float rim)
 {
-    const float8 sum = READ_CELLS(sums) + READ_CELLS(sums - 1) + READ_CELLS(sums + 1);
-    return radius > 1 ? sum + rim * (READ_CELLS(sums - 2) + READ_CELLS(sums + 2)) : sum;
+    const float16 sum = READ_WIDE(sums) + READ_WIDE(sums - 1) + READ_WIDE(sums + 1);
+    return radius > 1 ? sum + rim * (READ_WIDE(sums - 2) + READ_WIDE(sums + 2)) : sum;
 }
 
 INLINE void find_system_row(__global const float *guide, __global float *system, __global float *sums, int y,
                             const int radius, float rim, int width, int height, int stride)
 {
     const size_t picture = (size_t)height * stride;
-    for (int x = -8; x < width + 8; x += 8) {
-        float8 r = 0.0f, g = 0.0f, b = 0.0f, rr = 0.0f, rg = 0.0f, rb = 0.0f, gg = 0.0f, gb = 0.0f, bb = 0.0f;
+    for (int x = -16; x < width + 8; x += 16) {
+        float16 r = 0.0f, g = 0.0f, b = 0.0f, rr = 0.0f, rg = 0.0f, rb = 0.0f, gg = 0.0f, gb = 0.0f, bb = 0.0f;
         UNROLL
         for (int j = -radius; j <= radius; j++) {
             __global const float *cells = guide + (size_t)reflect(y + j, height) * stride + SIDE + x;
-            const float8 red = READ_CELLS(cells), green = READ_CELLS(cells + picture),
-                         blue = READ_CELLS(cells + 2 * picture);
-            const float8 red_part = ROW_WEIGHT(j) * red, green_part = ROW_WEIGHT(j) * green,
+            const float16 red = READ_WIDE(cells), green = READ_WIDE(cells + picture),
+                         blue = READ_WIDE(cells + 2 * picture);
+            const float16 red_part = ROW_WEIGHT(j) * red, green_part = ROW_WEIGHT(j) * green,
                          blue_part = ROW_WEIGHT(j) * blue;
             r += red_part;
             g += green_part;
@@ -58,28 +58,28 @@ INLINE void find_system_row(__global const float *guide, __global float *system,
             gb += green_part * blue;
             bb += blue_part * blue;
         }
-        const float8 all[9] = {r, g, b, rr, rg, rb, gg, gb, bb};
+        const float16 all[9] = {r, g, b, rr, rg, rb, gg, gb, bb};
         UNROLL
         for (int i = 0; i < 9; i++)
-            CELLS(sums + i * stride + x) = all[i];
+            WIDE(sums + i * stride + x) = all[i];
     }
     const float share = 1.0f / area(rim);
-    for (int x = 0; x < width; x += 8) {
-        float8 mean[9];
+    for (int x = 0; x < width; x += 16) {
+        float16 mean[9];
         UNROLL
         for (int i = 0; i < 9; i++)
             mean[i] = along_row(sums + i * stride + x, radius, rim) * share;
-        const float8 r = mean[0], g = mean[1], b = mean[2];
-        const float8 rr = mean[3] - r * r + EPSILON, rg = mean[4] - r * g, rb = mean[5] - r * b,
+        const float16 r = mean[0], g = mean[1], b = mean[2];
+        const float16 rr = mean[3] - r * r + EPSILON, rg = mean[4] - r * g, rb = mean[5] - r * b,
                      gg = mean[6] - g * g + EPSILON, gb = mean[7] - g * b, bb = mean[8] - b * b + EPSILON;
-        const float8 irr = gg * bb - gb * gb, irg = gb * rb - rg * bb, irb = rg * gb - gg * rb,
+        const float16 irr = gg * bb - gb * gb, irg = gb * rb - rg * bb, irb = rg * gb - gg * rb,
                      igg = rr * bb - rb * rb, igb = rg * rb - rr * gb, ibb = rr * gg - rg * rg;
-        const float8 scale = 1.0f / (rr * irr + rg * irg + rb * irb);
-        const float8 all[9] = {irr * scale, irg * scale, irb * scale, igg * scale, igb * scale,
+        const float16 scale = 1.0f / (rr * irr + rg * irg + rb * irb);
+        const float16 all[9] = {irr * scale, irg * scale, irb * scale, igg * scale, igb * scale,
                                ibb * scale, r,           g,           b};
         UNROLL
         for (int i = 0; i < 9; i++)
-            CELLS(system + i * picture + (size_t)y * stride + SIDE + x) = all[i];
+            WIDE(system + i * picture + (size_t)y * stride + SIDE + x) = all[i];
     }
 }
 
@@ -103,40 +103,40 @@ INLINE void fit_row(__global const short *cost, __global const float *guide, __g
                     int height, int stride)
 {
     const size_t picture = (size_t)height * stride;
-    for (int x = -8; x < width + 8; x += 8) {
-        float8 c = 0.0f, rc = 0.0f, gc = 0.0f, bc = 0.0f;
+    for (int x = -16; x < width + 8; x += 16) {
+        float16 c = 0.0f, rc = 0.0f, gc = 0.0f, bc = 0.0f;
         UNROLL
         for (int j = -radius; j <= radius; j++) {
             const size_t cell = (size_t)reflect(y + j, height) * stride + SIDE + x;
-            const float8 value = ROW_WEIGHT(j) * READ_SHORT_CELLS(cost + cell);
+            const float16 value = ROW_WEIGHT(j) * READ_WIDE_SHORTS(cost + cell);
             c += value;
-            rc += value * READ_CELLS(guide + cell);
-            gc += value * READ_CELLS(guide + picture + cell);
-            bc += value * READ_CELLS(guide + 2 * picture + cell);
+            rc += value * READ_WIDE(guide + cell);
+            gc += value * READ_WIDE(guide + picture + cell);
+            bc += value * READ_WIDE(guide + 2 * picture + cell);
         }
-        CELLS(sums + x) = c;
-        CELLS(sums + stride + x) = rc;
-        CELLS(sums + 2 * stride + x) = gc;
-        CELLS(sums + 3 * stride + x) = bc;
+        WIDE(sums + x) = c;
+        WIDE(sums + stride + x) = rc;
+        WIDE(sums + 2 * stride + x) = gc;
+        WIDE(sums + 3 * stride + x) = bc;
     }
     const float share = 1.0f / area(rim);
-    for (int x = 0; x < width; x += 8) {
+    for (int x = 0; x < width; x += 16) {
         __global const float *cell = system + (size_t)y * stride + SIDE + x;
-        const float8 r = READ_CELLS(cell + 6 * picture), g = READ_CELLS(cell + 7 * picture),
-                     b = READ_CELLS(cell + 8 * picture);
-        const float8 c = along_row(sums + x, radius, rim) * share;
-        const float8 rc = along_row(sums + stride + x, radius, rim) * share - r * c;
-        const float8 gc = along_row(sums + 2 * stride + x, radius, rim) * share - g * c;
-        const float8 bc = along_row(sums + 3 * stride + x, radius, rim) * share - b * c;
-        const float8 irg = READ_CELLS(cell + picture), irb = READ_CELLS(cell + 2 * picture),
-                     igb = READ_CELLS(cell + 4 * picture);
-        const float8 red = READ_CELLS(cell) * rc + irg * gc + irb * bc;
-        const float8 green = irg * rc + READ_CELLS(cell + 3 * picture) * gc + igb * bc;
-        const float8 blue = irb * rc + igb * gc + READ_CELLS(cell + 5 * picture) * bc;
-        CELLS(fitted + x) = red;
-        CELLS(fitted + stride + x) = green;
-        CELLS(fitted + 2 * stride + x) = blue;
-        CELLS(fitted + 3 * stride + x) = c - red * r - green * g - blue * b;
+        const float16 r = READ_WIDE(cell + 6 * picture), g = READ_WIDE(cell + 7 * picture),
+                     b = READ_WIDE(cell + 8 * picture);
+        const float16 c = along_row(sums + x, radius, rim) * share;
+        const float16 rc = along_row(sums + stride + x, radius, rim) * share - r * c;
+        const float16 gc = along_row(sums + 2 * stride + x, radius, rim) * share - g * c;
+        const float16 bc = along_row(sums + 3 * stride + x, radius, rim) * share - b * c;
+        const float16 irg = READ_WIDE(cell + picture), irb = READ_WIDE(cell + 2 * picture),
+                     igb = READ_WIDE(cell + 4 * picture);
+        const float16 red = READ_WIDE(cell) * rc + irg * gc + irb * bc;
+        const float16 green = irg * rc + READ_WIDE(cell + 3 * picture) * gc + igb * bc;
+        const float16 blue = irb * rc + igb * gc + READ_WIDE(cell + 5 * picture) * bc;
+        WIDE(fitted + x) = red;
+        WIDE(fitted + stride + x) = green;
+        WIDE(fitted + 2 * stride + x) = blue;
+        WIDE(fitted + 3 * stride + x) = c - red * r - green * g - blue * b;
     }
     UNROLL
     for (int i = 0; i < 4; i++)
@@ -155,21 +155,21 @@ INLINE void apply_row(__global const float *ring, __global const float *colours,
 {
     UNROLL
     for (int i = 0; i < 4; i++)
-        for (int x = -8; x < width + 8; x += 8) {
-            float8 sum = 0.0f;
+        for (int x = -16; x < width + 8; x += 16) {
+            float16 sum = 0.0f;
             UNROLL
             for (int j = -radius; j <= radius; j++)
-                sum += ROW_WEIGHT(j) * READ_CELLS(FITTED(y + j) + i * stride + x);
-            CELLS(sums + i * stride + x) = sum;
+                sum += ROW_WEIGHT(j) * READ_WIDE(FITTED(y + j) + i * stride + x);
+            WIDE(sums + i * stride + x) = sum;
         }
     const float share = 1.0f / area(rim);
-    for (int x = 0; x < width; x += 8) {
-        const float8 value = along_row(sums + x, radius, rim) * READ_CELLS(colours + x) +
-                             along_row(sums + stride + x, radius, rim) * READ_CELLS(colours + picture + x) +
-                             along_row(sums + 2 * stride + x, radius, rim) * READ_CELLS(colours + 2 * picture + x) +
+    for (int x = 0; x < width; x += 16) {
+        const float16 value = along_row(sums + x, radius, rim) * READ_WIDE(colours + x) +
+                             along_row(sums + stride + x, radius, rim) * READ_WIDE(colours + picture + x) +
+                             along_row(sums + 2 * stride + x, radius, rim) * READ_WIDE(colours + 2 * picture + x) +
                              along_row(sums + 3 * stride + x, radius, rim);
-        HALF_SHORTS(filtered + x) =
-            to_shorts(clamp(share * value, (float8)(-LARGEST_COST), (float8)(LARGEST_COST)));
+        SHORTS(filtered + x) =
+            to_wide_shorts(clamp(share * value, (float16)(-LARGEST_COST), (float16)(LARGEST_COST)));
     }
 }
 

@@ -29,6 +29,10 @@ typedef float8 float8_anywhere __attribute__((aligned(4)));
 #define CELLS(pointer) (*(__global float8_anywhere *)(pointer))
 #define READ_CELLS(pointer) (*(__global const float8_anywhere *)(pointer))
 
+typedef float16 float16_anywhere __attribute__((aligned(4)));
+#define WIDE(pointer) (*(__global float16_anywhere *)(pointer))
+#define READ_WIDE(pointer) (*(__global const float16_anywhere *)(pointer))
+
 typedef short8 short8_anywhere __attribute__((aligned(2)));
 typedef short16 short16_anywhere __attribute__((aligned(2)));
 typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
@@ -39,6 +43,7 @@ typedef ushort16 ushort16_anywhere __attribute__((aligned(2)));
 #define HALF_SHORTS(pointer) (*(__global short8_anywhere *)(pointer))
 #define READ_HALF_SHORTS(pointer) (*(__global const short8_anywhere *)(pointer))
 #define READ_SHORT_CELLS(pointer) convert_float8(READ_HALF_SHORTS(pointer))
+#define READ_WIDE_SHORTS(pointer) convert_float16(READ_SHORTS(pointer))
 
 /* (a + b) / 2, halves rounded up; |a - b|; a part / 65536, rounded down: one or two instructions on CPUs. */
 INLINE ushort16 mean_of(ushort16 a, ushort16 b)
@@ -59,6 +64,11 @@ INLINE short8 to_shorts(float8 v)
     return convert_short8(convert_int8(v + 32768.5f) - 32768);
 }
 
+INLINE short16 to_wide_shorts(float16 v)
+{
+    return convert_short16(convert_int16(v + 32768.5f) - 32768);
+}
+
 /* Mirrors the 8 cells at both ends of a row into its sides; `row` points at cell 0. */
 INLINE void mirror_ends(__global float *row, int width)
 {
@@ -72,20 +82,28 @@ INLINE void mirror_short_ends(__global short *row, int width)
     HALF_SHORTS(row + width) = READ_HALF_SHORTS(row + width - 8).s76543210;
 }
 
-INLINE int any_of(int8 truth)
+INLINE int __attribute__((overloadable)) any_of(int8 truth)
 {
     const long4 parts = as_long4(truth);
     return (parts.s0 | parts.s1 | parts.s2 | parts.s3) != 0;
 }
 
-/* exp(x), x <= 0, to 0.2 %: 2^f as a parabola on the fraction f of x log2 e; the library's is slower. 0 below -80. */
-INLINE float8 quick_exp(float8 x)
+INLINE int __attribute__((overloadable)) any_of(int16 truth)
 {
-    const float8 power = max(x, -80.0f) * 1.44269504f;
-    const float8 whole = floor(power), fraction = power - whole;
-    const float8 mantissa = 1.00172476f + fraction * (0.65763628f + fraction * 0.33718944f);
-    return as_float8(as_int8(mantissa) + (convert_int8(whole) << 23));
+    return any_of(truth.lo | truth.hi);
 }
+
+/* exp(x), x <= 0, to 0.2 %: 2^f as a parabola on the fraction f of x log2 e; the library's is slower. 0 below -80. */
+#define QUICK_EXP(floats, ints, convert_ints)                                                                          \
+    INLINE floats __attribute__((overloadable)) quick_exp(floats x)                                                    \
+    {                                                                                                                  \
+        const floats power = max(x, -80.0f) * 1.44269504f;                                                             \
+        const floats whole = floor(power), fraction = power - whole;                                                   \
+        const floats mantissa = 1.00172476f + fraction * (0.65763628f + fraction * 0.33718944f);                       \
+        return as_##floats(as_##ints(mantissa) + (convert_ints(whole) << 23));                                         \
+    }
+QUICK_EXP(float8, int8, convert_int8)
+QUICK_EXP(float16, int16, convert_int16)
 
 /* Index i of n cells mirrored at the ends, the end cells repeated: -1 is 0, n is n - 1. */
 INLINE int reflect(int i, int n)

@@ -6,7 +6,7 @@ namespace dff {
 
 GuideImage::GuideImage(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), median_(low.allocate(queue, 1)), nearer_(low.allocate(queue, 1)),
-      blended_(low.allocate(queue, 3)), guide_(low.allocate(queue, 3))
+      noisy_(low.allocate_shorts(queue, 3)), guide_(low.allocate(queue, 3))
 {
     const Program program(queue.device(), "guide_image");
     median_5x5_ = program.kernel("median_5x5");
@@ -18,20 +18,19 @@ void GuideImage::run(const CostVolume &cost, const SmallPlanes &small, const Noi
 {
     queue_.begin_stage("guide");
     queue_.run(median_5x5_, low_.rows(), cost.first_guess(), median_, low_.width, low_.stride);
-    blend(median_, small, noise, blended_);
-    queue_.run(denoise_, low_.rows(), blended_, noise.noise(), guide_, low_.width, low_.stride, low_.scale);
+    blend(median_, small, noise);
+    queue_.run(denoise_, low_.rows(), noisy_, noise.noise(), guide_, low_.width, low_.stride, low_.scale);
 }
 
 void GuideImage::run_at(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise)
 {
     queue_.begin_stage("guide-again");
-    blend(u, small, noise, guide_);
+    blend(u, small, noise);
 }
 
-void GuideImage::blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise,
-                       const cl::Buffer &guide)
+void GuideImage::blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise)
 {
-    queue_.run(blend_planes_, low_.rows(), small.colours(), u, noise.noise(), nearer_, guide, guide_,
+    queue_.run(blend_planes_, low_.rows(), small.colours(), u, noise.noise(), nearer_, guide_, noisy_,
                low_.width, low_.stride, low_.planes);
 }
 

@@ -22,13 +22,12 @@ public:
     const cl::Buffer &nearer() const { return nearer_; } /* the least u around each cell */
 
 private:
-    void blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise,
-               const cl::Buffer &guide);
+    void blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise);
 
     CommandQueue &queue_;
     LowShape low_;
     cl::Kernel median_5x5_, blend_planes_, denoise_;
-    cl::Buffer median_, nearer_, blended_, guide_;
+    cl::Buffer median_, nearer_, noisy_, guide_;
 };
 
 } // namespace dff

@@ -263,11 +263,11 @@ Colours denoise(const Colours &guide, float sigma, unsigned scale)
             float sum = 0.0f, weights = 0.0f;
             for (int j = -4; j <= 4; j++)
                 for (int i = -4; i <= 4; i++) {
-                    const float e = distance(guide, x, y, guide, x + i, y + j);
-                    const float weight =
-                        i * i + j * j > 16
-                            ? 0.0f
-                            : std::exp(-(i * i + j * j) / 8.0f - e * e / (2.0f * range * range));
+                    if (i * i + j * j > 16)
+                        continue;
+                    const float e =
+                        std::min(distance(guide, x, y, guide, x + i, y + j) / (4.0f * range), 1.0f);
+                    const float weight = std::exp(-(i * i + j * j) / 8.0f) * std::pow(1.0f - e * e, 8.0f);
                     sum += weight * at(colour, x + i, y + j);
                     weights += weight;
                 }
