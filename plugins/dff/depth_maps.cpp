@@ -7,7 +7,7 @@
 namespace dff {
 
 DepthMaps::DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, const GstVideoInfo &stack,
-                     const GstDepthInfo &depth, const GstSegment &segment)
+                     const GstDepthInfo &depth, const StreamSegment &segment)
     : stack_(stack)
 {
     for (const std::shared_ptr<DepthOutput> &output : outputs) {

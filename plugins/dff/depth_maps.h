@@ -16,7 +16,7 @@ class DepthMaps {
 public:
     /* Prepares the linked outputs and takes a picture of the stack's size from each. */
     DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, const GstVideoInfo &stack,
-              const GstDepthInfo &depth, const GstSegment &segment);
+              const GstDepthInfo &depth, const StreamSegment &segment);
     ~DepthMaps();
 
     DepthMaps(const DepthMaps &) = delete;

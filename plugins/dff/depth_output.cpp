@@ -40,7 +40,7 @@ void DepthOutput::restart()
     gst_clear_caps(&caps_);
 }
 
-void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const GstSegment &segment)
+void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const StreamSegment &segment)
 {
     open();
 
@@ -57,11 +57,27 @@ void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, 
         gst_pad_push_event(pad_, gst_event_new_caps(caps));
         pool_.start(info);
     }
-    if (!has_segment_ || !gst_segment_is_equal(&segment_, &segment)) {
-        segment_ = segment;
-        has_segment_ = true;
-        gst_pad_push_event(pad_, gst_event_new_segment(&segment));
-    }
+    send_segment(segment);
+}
+
+void DepthOutput::pass_gap(GstEvent *gap, const StreamSegment &segment)
+{
+    if (!caps_)
+        return;
+    send_segment(segment);
+    gst_pad_push_event(pad_, gst_event_ref(gap));
+}
+
+void DepthOutput::send_segment(const StreamSegment &segment)
+{
+    if (has_segment_ && segment_.seqnum == segment.seqnum &&
+        gst_segment_is_equal(&segment_.segment, &segment.segment))
+        return;
+    segment_ = segment;
+    has_segment_ = true;
+    GstEvent *event = gst_event_new_segment(&segment.segment);
+    gst_event_set_seqnum(event, segment.seqnum);
+    gst_pad_push_event(pad_, event);
 }
 
 } // namespace dff

@@ -9,6 +9,12 @@
 
 namespace dff {
 
+/* A segment and its event's number. */
+struct StreamSegment {
+    GstSegment segment;
+    guint32 seqnum;
+};
+
 /* One source pad of dffdepth with what it has to send before its first picture. Used by the streaming thread
  * alone, but for the pad itself. */
 class DepthOutput {
@@ -25,7 +31,10 @@ public:
 
     /* Sends stream-start, caps and segment where they are not the last that were sent. `depth` stands in the
      * caps of 16-bit maps. */
-    void prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const GstSegment &segment);
+    void prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const StreamSegment &segment);
+
+    /* Sends the gap within `segment`; lost where no picture was sent yet, whose caps nobody knows. */
+    void pass_gap(GstEvent *gap, const StreamSegment &segment);
 
     /* Sends stream-start if nothing was sent yet, so that other events may follow. */
     void open();
@@ -37,12 +46,14 @@ public:
     GstBuffer *acquire() { return pool_.acquire(); }
 
 private:
+    void send_segment(const StreamSegment &segment);
+
     GstElement *element_;
     GstPad *pad_;
     GstVideoFormat format_;
     PicturePool pool_;
     GstCaps *caps_ = nullptr;
-    GstSegment segment_{};
+    StreamSegment segment_{};
     bool opened_ = false;
     bool has_segment_ = false;
 };

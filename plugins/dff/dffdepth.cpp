@@ -60,7 +60,7 @@ struct State {
     /* The streaming thread's own. */
     dff::StackDepth depth;
     bool has_caps = false;
-    GstSegment segment{};
+    dff::StreamSegment segment{};
     guint64 next_stack = 0;
 };
 
@@ -190,11 +190,13 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
 }
 
 /* A stream of bytes (a file) becomes a stream in time. */
-static void set_segment(State &state, const GstSegment *segment)
+static void set_segment(State &state, GstEvent *event)
 {
-    state.segment = *segment;
+    const GstSegment *segment = nullptr;
+    gst_event_parse_segment(event, &segment);
+    state.segment = {*segment, gst_event_get_seqnum(event)};
     if (segment->format != GST_FORMAT_TIME)
-        gst_segment_init(&state.segment, GST_FORMAT_TIME);
+        gst_segment_init(&state.segment.segment, GST_FORMAT_TIME);
 }
 
 static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
@@ -214,13 +216,14 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
         gst_event_unref(event); /* each output has its own, sent before its next picture */
         return accepted;
     }
-    case GST_EVENT_SEGMENT: {
-        const GstSegment *segment = nullptr;
-        gst_event_parse_segment(event, &segment);
-        set_segment(state, segment);
+    case GST_EVENT_SEGMENT:
+        set_segment(state, event);
         gst_event_unref(event);
         return TRUE;
-    }
+    case GST_EVENT_GAP:
+        state.outputs.pass_gap(event, state.segment);
+        gst_event_unref(event);
+        return TRUE;
     case GST_EVENT_FLUSH_STOP:
         state.outputs.restart();
         break;

@@ -40,6 +40,12 @@ void OutputPads::restart()
     gst_flow_combiner_reset(flows_);
 }
 
+void OutputPads::pass_gap(GstEvent *gap, const StreamSegment &segment)
+{
+    for (const auto &output : outputs())
+        output->pass_gap(gap, segment);
+}
+
 GstFlowReturn OutputPads::push(DepthMaps &maps)
 {
     GstFlowReturn flow = GST_FLOW_NOT_LINKED;

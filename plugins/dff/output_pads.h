@@ -29,6 +29,9 @@ public:
     void open();
     void restart();
 
+    /* DepthOutput::pass_gap() of each. */
+    void pass_gap(GstEvent *gap, const StreamSegment &segment);
+
     /* Pushes the maps and returns what upstream is to know of it. */
     GstFlowReturn push(DepthMaps &maps);
 

@@ -94,7 +94,7 @@ gboolean take_segment(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *ev
 {
     const GstSegment *segment = nullptr;
     gst_event_parse_segment(event, &segment);
-    self->state->core.set_segment(input, *segment);
+    self->state->core.set_segment(input, *segment, gst_event_get_seqnum(event));
     gst_event_unref(event);
     return TRUE;
 }

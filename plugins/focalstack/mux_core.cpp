@@ -124,12 +124,12 @@ bool MuxCore::set_caps(MuxInput &input, const GstCaps *caps)
     return input.has_caps;
 }
 
-void MuxCore::set_segment(MuxInput &input, const GstSegment &segment)
+void MuxCore::set_segment(MuxInput &input, const GstSegment &segment, guint32 seqnum)
 {
     if (!input.plane && !gst_segment_is_equal(&input.segment, &segment)) {
         const std::lock_guard lock(stream_);
         finish();
-        output_.set_segment(segment);
+        output_.set_segment(segment, seqnum);
     }
     gst_segment_copy_into(&segment, &input.segment);
 }

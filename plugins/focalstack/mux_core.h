@@ -40,7 +40,7 @@ public:
     /* The input's streaming thread. A closed input's take() returns at once. */
     GstFlowReturn take(MuxInput &input, GstBuffer *buffer);
     bool set_caps(MuxInput &input, const GstCaps *caps);
-    void set_segment(MuxInput &input, const GstSegment &segment);
+    void set_segment(MuxInput &input, const GstSegment &segment, guint32 seqnum);
     bool pass_gap(MuxInput &input, GstEvent *gap);
     void begin(MuxInput &input);
     /* True if this was the last input's end, so that the whole stream ends. */

@@ -7,6 +7,7 @@ namespace dff {
 void MuxOutput::restart()
 {
     gst_segment_init(&segment_, GST_FORMAT_TIME);
+    seqnum_ = GST_SEQNUM_INVALID;
     has_caps_ = false;
     segment_due_ = true;
     discont_ = true;
@@ -18,13 +19,14 @@ void MuxOutput::begin_own_stream()
     gst_pad_push_event(source_, gst_event_new_stream_start(id));
 }
 
-void MuxOutput::set_segment(const GstSegment &segment)
+void MuxOutput::set_segment(const GstSegment &segment, guint32 seqnum)
 {
     /* Where the input does not count in time, the stacks' times count from 0. */
     if (segment.format == GST_FORMAT_TIME)
         gst_segment_copy_into(&segment, &segment_);
     else
         gst_segment_init(&segment_, GST_FORMAT_TIME);
+    seqnum_ = seqnum;
     segment_due_ = true;
     discont_ = true;
 }
@@ -39,8 +41,12 @@ bool MuxOutput::set_shape(const GstFocalStackInfo &info)
 
 void MuxOutput::send_due_segment()
 {
-    if (segment_due_)
-        gst_pad_push_event(source_, gst_event_new_segment(&segment_));
+    if (!segment_due_)
+        return;
+    GstEvent *event = gst_event_new_segment(&segment_);
+    if (seqnum_ != GST_SEQNUM_INVALID)
+        gst_event_set_seqnum(event, seqnum_);
+    gst_pad_push_event(source_, event);
     segment_due_ = false;
 }
 

@@ -20,7 +20,8 @@ public:
     /* The mux's pads have no common stream: it has one of its own. */
     void begin_own_stream();
 
-    void set_segment(const GstSegment &segment);
+    /* `seqnum` is that of its event. */
+    void set_segment(const GstSegment &segment, guint32 seqnum);
     const GstSegment &segment() const { return segment_; }
 
     /* Whether downstream takes stacks of this shape. */
@@ -41,6 +42,7 @@ private:
     GstPad *source_;
     GstFocalStackInfo info_{};
     GstSegment segment_{};
+    guint32 seqnum_ = GST_SEQNUM_INVALID; /* of its event */
     bool has_caps_ = false;
     bool segment_due_ = true;
     bool discont_ = true;

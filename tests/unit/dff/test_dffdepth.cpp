@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_pipeline.h"
 
+#include <gst/check/gstharness.h>
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 
@@ -209,4 +210,35 @@ TEST(DffDepth, live_latency_holds_the_computing)
     ASSERT_TRUE(gst_pad_peer_query(sink_pad, query));
     gst_query_parse_latency(query, nullptr, &before, nullptr);
     EXPECT_GT(after, before);
+}
+
+TEST(DffDepth, a_gap_comes_after_caps_and_in_its_own_segment)
+{
+    gst_init(nullptr, nullptr);
+    GstHarness *harness = gst_harness_new("dffdepth");
+    gst_harness_set_src_caps_str(
+        harness, "video/x-focal-stack,format=GRAY8,width=64,height=64,planes=3,framerate=5/1");
+    gst_harness_push_event(harness, gst_event_new_gap(0, GST_SECOND));
+    const std::vector<guint8> stack = gray_stack(64, 64, 3, 1);
+    gst_harness_push(harness, gst_buffer_new_memdup(stack.data(), stack.size()));
+
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    segment.base = GST_SECOND;
+    GstEvent *event = gst_event_new_segment(&segment);
+    const guint32 seqnum = gst_event_get_seqnum(event);
+    gst_harness_push_event(harness, event);
+    gst_harness_push_event(harness, gst_event_new_gap(0, GST_SECOND));
+
+    std::vector<GstEventType> events;
+    guint32 last_segment = 0;
+    while (g_autoptr(GstEvent) sent = gst_harness_try_pull_event(harness)) {
+        events.push_back(GST_EVENT_TYPE(sent));
+        if (GST_EVENT_TYPE(sent) == GST_EVENT_SEGMENT)
+            last_segment = gst_event_get_seqnum(sent);
+    }
+    EXPECT_EQ(events, (std::vector{GST_EVENT_STREAM_START, GST_EVENT_CAPS, GST_EVENT_SEGMENT,
+                                   GST_EVENT_SEGMENT, GST_EVENT_GAP}));
+    EXPECT_EQ(last_segment, seqnum);
+    gst_harness_teardown(harness);
 }

@@ -223,13 +223,16 @@ TEST(MuxStream, the_segment_comes_again_after_a_flush)
     for (unsigned i = 0; i < 2; i++) {
         gst_harness_push_event(harness.get(), gst_event_new_flush_start());
         gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
-        gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+        GstEvent *own = gst_event_new_segment(&segment);
+        const guint32 seqnum = gst_event_get_seqnum(own);
+        gst_harness_push_event(harness.get(), own);
         push_sweep(harness.get(), info, i);
         GstEvent *event = gst_pad_get_sticky_event(harness->sinkpad, GST_EVENT_SEGMENT, 0);
         ASSERT_NE(event, nullptr);
         const GstSegment *sent = nullptr;
         gst_event_parse_segment(event, &sent);
         EXPECT_EQ(sent->start, 5 * GST_SECOND);
+        EXPECT_EQ(gst_event_get_seqnum(event), seqnum);
         gst_event_unref(event);
     }
 }
