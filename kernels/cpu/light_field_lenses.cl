@@ -3,12 +3,13 @@
  *
  * The same as lenticular of light_field_panel.cl, for CPUs: a work-item is a strip of the panel's rows. Each subpixel has a
  * slope of its own; the pixel it sees is sought only between those that two of BINS + 1 slopes around it see, since rays
- * through one point hit the relief in the order of their slopes.
+ * through one point hit the relief in the order of their slopes. 8 of them search in step.
  */
 #include "light_field_row.cl"
+#include "lanes8.cl"
 
-#define BINS 4 /* from the slope 0 to the greatest, in each direction */
-#define BIN_STEPS 64 /* slopes in the table for each of them */
+#define BINS 8 /* from the slope 0 to the greatest, in each direction */
+#define BIN_STEPS 32 /* slopes in the table for each of them */
 
 /* The relief's row from one side. */
 typedef struct {
@@ -25,48 +26,57 @@ inline void find_seen(const Side *side, __global const float *slopes, __global i
         for (int j = 0; j < width; j += 16) {
             const float16 place = LANES + (float)j - slope * *(__global const float16 *)(side->row.height + j);
             *(__global int16 *)(behind + j) = first_behind(place, 0.0f, 1.0f, width);
-            *(__global ushort16 *)(seen + j) = 0;
         }
-        for (int j = 0; j < width - 1; j++)
-            seen[behind[j]] = (ushort)j;
-        int last = 0;
-        for (int j = 0; j < width; j++) {
-            last = max(last, (int)seen[j]);
-            seen[j] = (ushort)last;
-        }
+        int end = width;
+        for (int j = width - 2; j >= 0; j--)
+            while (end > behind[j])
+                seen[--end] = (ushort)j;
+        while (end > 0)
+            seen[--end] = 0;
     }
 }
 
-/* For each subpixel of a panel's row, from the left, its view as a step in the table of slopes, below 0 to the left of the
- * middle: the subpixel i belongs to fract(start + i per_subpixel). */
-inline void find_steps(__global float *steps, int count, float start, float per_subpixel, int invert)
+/* The channel c of what 8 rays see at the places s, at its bits of a pixel. Steps in the table of slopes are below 0 for rays
+ * that lean to the left and see the row `mirrored`, whose arrays lie as far behind the row's as one's do behind another's. */
+inline uint8 look_at(const Layers *layers, const Side *side, const Side *mirrored, __global const float *slopes, float8 s,
+                     float8 step, int c)
 {
-    const float scale = (invert ? -2.0f : 2.0f) * (BINS * BIN_STEPS);
-    for (int i = 0; i < count; i += 16) {
-        const float16 place = start + (LANES + (float)i) * per_subpixel;
-        float16 view = place - convert_float16(convert_int16(place));
-        view = view < 0.0f ? view + 1.0f : view;
-        *(__global float16 *)(steps + i) = (view - 0.5f) * scale;
-    }
-}
+    const Row *row = &side->row;
+    const int pitch = PITCH(row->width);
+    const int8 turned = step < 0.0f;
+    const float8 from_middle = fabs(step), place = turned ? row->width - 1 - s : s;
+    const int8 before = min(convert_int8(from_middle), (int8)(BINS * BIN_STEPS - 1));
+    const float8 less = GATHER(float8, slopes, before), more = GATHER(float8, slopes, (before + 1));
+    const float8 slope = less + (more - less) * (from_middle - convert_float8(before));
 
-/* The channel c of what is seen at the place s. */
-inline float look_at(const Layers *layers, const Side *side, __global const float *slopes, float s, float step, int c)
-{
-    const int before = min((int)step, BINS * BIN_STEPS - 1);
-    const float slope = mix(slopes[before], slopes[before + 1], step - before);
-    __global const float *height = side->row.height;
-    __global const ushort *seen = side->seen + (before / BIN_STEPS) * PITCH(side->row.width) + (int)s + 1;
-    int j = max(seen[0], seen[PITCH(side->row.width)]);
-    while (j - slope * height[j] > s)
-        j--;
-    const float fall = height[j] - height[j + 1], beside = s - (j - slope * height[j]);
-    if (fall > layers->step && beside > TOUCH && slope * (layers->heights.y - layers->heights.x) >= 1e-3f) {
-        const float4 color = look_behind(&side->row, s, j, slope, layers->step, layers->heights.x, layers->fill);
-        return c == 0 ? color.x : c == 1 ? color.y : color.z;
+    const int8 bin = (before / BIN_STEPS + (turned ? BINS + 1 : 0)) * pitch + convert_int8(place) + 1;
+    const int8 start = convert_int8(max(GATHER(ushort8, side->seen, bin), GATHER(ushort8, side->seen, (bin + pitch))));
+    const int8 offset = turned ? (int)(mirrored->row.height - row->height) : 0;
+    int8 j = start;
+    float8 height = 0.0f;
+    for (int8 beyond = -1, at = start; any(beyond); at = max(at - 1, (int8)0)) {
+        const float8 here = GATHER(float8, row->height, (offset + at));
+        height = beyond ? here : height;
+        j = beyond ? at : j;
+        beyond = beyond && at > 0 && convert_float8(at) - slope * here > place;
     }
-    __global const uchar *color = (__global const uchar *)(side->row.color + j) + c;
-    return mix((float)color[0], (float)color[4], beside / (1.0f + slope * fall));
+
+    const int8 pixel = offset + j;
+    const float8 fall = height - GATHER(float8, row->height, (pixel + 1));
+    const float8 beside = place - (convert_float8(j) - slope * height);
+    const uint8 left = GATHER(uint8, row->color, pixel), right = GATHER(uint8, row->color, (pixel + 1));
+    const float8 from = channel_of(left, 8 * c), to = channel_of(right, 8 * c);
+    float8 value = from + (to - from) * (beside / (1.0f + slope * fall));
+    const int8 torn = fall > layers->step && beside > TOUCH && slope * (layers->heights.y - layers->heights.x) >= 1e-3f;
+    if (any(torn))
+        for (int i = 0; i < 8; i++)
+            if (EACH(int, torn)[i]) {
+                const float4 color = look_behind(EACH(int, turned)[i] ? &mirrored->row : row, EACH(float, place)[i],
+                                                 EACH(int, j)[i], EACH(float, slope)[i], layers->step, layers->heights.x,
+                                                 layers->fill);
+                EACH(float, value)[i] = c == 0 ? color.x : c == 1 ? color.y : color.z;
+            }
+    return convert_uint8(convert_int8(value + 0.5f)) << (8 * c);
 }
 
 /* Arguments as those of lenticular; and slopes of BINS * BIN_STEPS + 1 turns from the middle to the edge of the cone, the
@@ -80,11 +90,11 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
     scratch += (size_t)strip * scratch_size;
     const Row row = make_row(&scratch, width), mirrored_row = make_row(&scratch, width);
     __global int *behind = (__global int *)scratch;
-    __global float *steps = (__global float *)(scratch + PITCH(width));
-    __global ushort *seen = (__global ushort *)(steps + PITCH(3 * output_size.x));
+    __global ushort *seen = (__global ushort *)(scratch + PITCH(width));
     const Side side = {row, seen}, mirrored = {mirrored_row, seen + (BINS + 1) * PITCH(width)};
     const int channel[3] = {subpixels.x, subpixels.y, subpixels.z};
     const float per_subpixel = pitch / (3.0f * output_size.x);
+    const float steps = (flips.z ? -2.0f : 2.0f) * (BINS * BIN_STEPS); /* in the table of slopes, from view to view */
     int loaded = -1;
     for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
         const float point_y = clamp(first.y + scale.y * (flips.y ? output_size.y - 1 - y : y), 0.0f, size.y - 1.0f);
@@ -97,19 +107,19 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
         }
         load_colors(&layers, point_y, base, &row, &mirrored_row);
         const float from_bottom = 1.0f - (y + 0.5f) / output_size.y;
-        find_steps(steps, 3 * output_size.x, 1.5f * per_subpixel + tilt * from_bottom * pitch - center, per_subpixel, flips.z);
-        __global uchar *pixel = output + stride * (ulong)y;
-        for (int x = 0; x < output_size.x; x++, pixel += channels) {
-            const float s = first.x + scale.x * (flips.x ? output_size.x - 1 - x : x) - base;
+        const float start = 1.5f * per_subpixel + tilt * from_bottom * pitch - center;
+        __global uchar *line = output + stride * (ulong)y;
+        for (int x = 0; x < output_size.x; x += 8) {
+            const float8 column = min(LANES8 + (float)x, output_size.x - 1.0f);
+            const float8 s = first.x + scale.x * (flips.x ? output_size.x - 1 - column : column) - base;
+            uint8 colors = OPAQUE;
             for (int k = 0; k < 3; k++) {
-                const float step = steps[3 * x + k];
-                const int c = channel[k];
-                const float value = step < 0.0f ? look_at(&layers, &mirrored, slopes, width - 1 - s, -step, c)
-                                                : look_at(&layers, &side, slopes, s, step, c);
-                pixel[c] = (uchar)(value + 0.5f);
+                const float8 lens = start + (3.0f * column + k) * per_subpixel;
+                const float8 fraction = lens - convert_float8(convert_int8(lens));
+                const float8 view = fraction < 0.0f ? fraction + 1.0f : fraction;
+                colors |= look_at(&layers, &side, &mirrored, slopes, s, (view - 0.5f) * steps, channel[k]);
             }
-            if (channels == 4)
-                pixel[3] = 255;
+            put_colors(line, x, min(8, output_size.x - x), channels, colors);
         }
     }
 }

@@ -5,13 +5,7 @@
  * those that come upon the edge of a thing are traced one by one.
  */
 #include "../light_field_trace.cl"
-
-typedef uint8 __attribute__((aligned(4))) uint8_any;
-
-#define GATHER(type, from, i) \
-    (type)(from[i.s0], from[i.s1], from[i.s2], from[i.s3], from[i.s4], from[i.s5], from[i.s6], from[i.s7])
-#define OPAQUE 0xff000000u
-#define LANES8 (float8)(0, 1, 2, 3, 4, 5, 6, 7)
+#include "lanes8.cl"
 
 typedef struct {
     float8 x, y;
@@ -25,12 +19,12 @@ typedef struct {
 
 inline int8 across_of(const Ways *ways, float8 q)
 {
-    return convert_int8(clamp(ways->beside + ways->aside * q + 0.5f, 0.0f, ways->last_across));
+    return convert_int8(clamp(ways->beside + ways->aside * q + 0.5f, (float8)0.0f, ways->last_across));
 }
 
 inline int8 along_of(const Ways *ways, int8 u)
 {
-    return clamp(u ^ ways->turn, 0, ways->last_along);
+    return clamp(u ^ ways->turn, (int8)0, ways->last_along);
 }
 
 inline float8 heights_at(const Layers *layers, const Ways *ways, int8 u, float8 q)
@@ -48,14 +42,12 @@ inline float8 roofs_over(const Layers *layers, const Ways *ways, int8 u, float8 
     return max(GATHER(float8, layers->roof, near), GATHER(float8, layers->roof, far));
 }
 
-/* The channel of pixels at `shift` bits. */
-inline float8 channel_of(uint8 upper_left, uint8 upper_right, uint8 lower_left, uint8 lower_right, float8 right, float8 down,
-                         int shift)
+/* The channel at `shift` bits between four pixels. */
+inline float8 channel_between(uint8 upper_left, uint8 upper_right, uint8 lower_left, uint8 lower_right, float8 right,
+                              float8 down, int shift)
 {
-    const float8 a = convert_float8(convert_int8(upper_left >> shift & 255));
-    const float8 b = convert_float8(convert_int8(upper_right >> shift & 255));
-    const float8 c = convert_float8(convert_int8(lower_left >> shift & 255));
-    const float8 d = convert_float8(convert_int8(lower_right >> shift & 255));
+    const float8 a = channel_of(upper_left, shift), b = channel_of(upper_right, shift);
+    const float8 c = channel_of(lower_left, shift), d = channel_of(lower_right, shift);
     const float8 upper = a + (b - a) * right, lower = c + (d - c) * right;
     return upper + (lower - upper) * down;
 }
@@ -65,25 +57,24 @@ inline uint8 colors_at(__global const uint *picture, int2 size, Points point)
 {
     const float8 x = clamp(point.x, 0.0f, size.x - 1.0f), y = clamp(point.y, 0.0f, size.y - 1.0f);
     const int8 left = convert_int8(x), top = convert_int8(y);
-    const int8 right = min(left + 1, size.x - 1), upper = top * size.x, lower = min(top + 1, size.y - 1) * size.x;
+    const int8 right = min(left + 1, (int8)(size.x - 1)), upper = top * size.x, lower = min(top + 1, (int8)(size.y - 1)) * size.x;
     const uint8 a = GATHER(uint8, picture, (upper + left)), b = GATHER(uint8, picture, (upper + right));
     const uint8 c = GATHER(uint8, picture, (lower + left)), d = GATHER(uint8, picture, (lower + right));
     const float8 across = x - convert_float8(left), down = y - convert_float8(top);
     uint8 color = OPAQUE;
     for (int shift = 0; shift < 24; shift += 8)
-        color |= convert_uint8(convert_int8(channel_of(a, b, c, d, across, down, shift) + 0.5f)) << shift;
+        color |= convert_uint8(convert_int8(channel_between(a, b, c, d, across, down, shift) + 0.5f)) << shift;
     return color;
 }
 
 /* The colours, with those of the chosen rays traced one by one. */
 inline uint8 trace_chosen(const Layers *layers, Points origin, Points slope, int8 chosen, uint8 colors)
 {
-    const float8 rays[4] = {origin.x, origin.y, slope.x, slope.y};
-    const float(*ray)[8] = (const float(*)[8])rays;
     for (int i = 0; i < 8; i++)
-        if (((const int *)&chosen)[i]) {
-            const float4 color = trace(layers, (float2)(ray[0][i], ray[1][i]), (float2)(ray[2][i], ray[3][i]));
-            ((uint *)&colors)[i] = as_uint(convert_uchar4(color + 0.5f)) | OPAQUE;
+        if (EACH(int, chosen)[i]) {
+            const float4 color = trace(layers, (float2)(EACH(float, origin.x)[i], EACH(float, origin.y)[i]),
+                                       (float2)(EACH(float, slope.x)[i], EACH(float, slope.y)[i]));
+            EACH(uint, colors)[i] = as_uint(convert_uchar4(color + 0.5f)) | OPAQUE;
         }
     return colors;
 }
@@ -178,13 +169,7 @@ __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_pa
             const Points c = {to_panel.x * lens.x + to_panel.y * lens.y, to_panel.z * lens.x + to_panel.w * lens.y};
             const Points slope = {(c.x - px) * to_slope, (c.y - py) * (to_slope * aspect)};
             const Points origin = {first.x + scale.x * (c.x + center.x - 0.5f), first.y + scale.y * (c.y + center.y - 0.5f)};
-            const uint8 colors = trace_all(&layers, origin, slope);
-            if (channels == 4 && x + 8 <= output_size.x) {
-                *(__global uint8_any *)(line + 4 * x) = colors;
-                continue;
-            }
-            for (int i = 0; i < min(8, output_size.x - x); i++)
-                put_color(line + channels * (x + i), channels, convert_float4(as_uchar4(((const uint *)&colors)[i])));
+            put_colors(line, x, min(8, output_size.x - x), channels, trace_all(&layers, origin, slope));
         }
     }
 }

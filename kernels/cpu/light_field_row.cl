@@ -31,9 +31,12 @@ inline Row make_row(__global uint **scratch, int width)
     return row;
 }
 
-inline uint blend(uchar4 a, uchar4 b, float t)
+/* 4 pixels from x on, `share` of the way from one row to another. */
+inline uint4 blend(__global const uchar4 *from, __global const uchar4 *to, int x, float share)
 {
-    return as_uint(convert_uchar4(mix(convert_float4(a), convert_float4(b), t) + 0.5f));
+    const float16 a = convert_float16(as_uchar16(*(__global const uint4_any *)(from + x)));
+    const float16 b = convert_float16(as_uchar16(*(__global const uint4_any *)(to + x)));
+    return as_uint4(convert_uchar16(a + (b - a) * share + 0.5f));
 }
 
 /* The first of the places first + k / per_place, k in 0..last, at or behind each of 16 places; `last` behind the last one. */
@@ -57,22 +60,34 @@ inline void load_heights(const Layers *layers, int y, int base, const Row *row, 
     }
 }
 
-/* The colours at point_y, between two of the layers' rows. */
+inline void repeat_ends(__global uint *row, int begin, int end, int width)
+{
+    for (int j = 0; j < begin; j++)
+        row[j] = row[begin];
+    for (int j = end; j < width; j++)
+        row[j] = row[end - 1];
+}
+
+/* The colours at point_y, between two of the layers' rows. The last 4 may reach into the room behind the row, or before the
+ * mirrored one, that other arrays leave. */
 inline void load_colors(const Layers *layers, float point_y, int base, const Row *row, const Row *mirrored)
 {
-    const int above = (int)point_y, below = min(above + 1, layers->size.y - 1);
+    const int above = (int)point_y, below = min(above + 1, layers->size.y - 1), width = row->width;
     const size_t a = (size_t)above * layers->size.x, b = (size_t)below * layers->size.x;
-    const float share = point_y - above;
-    for (int j = 0, k = row->width - 1; j < row->width; j++, k--) {
-        const int x = clamp(base + j, 0, layers->size.x - 1);
-        uint seen = as_uint(layers->color[a + x]), hidden = as_uint(layers->hidden_color[a + x]);
-        if (share > 0.0f) {
-            seen = blend(layers->color[a + x], layers->color[b + x], share);
-            hidden = blend(layers->hidden_color[a + x], layers->hidden_color[b + x], share);
-        }
-        row->color[j] = mirrored->color[k] = seen;
-        row->hidden_color[j] = mirrored->hidden_color[k] = hidden;
+    const int begin = max(-base, 0), end = min(layers->size.x - base, width);
+    for (int j = begin; j < end; j += 4) {
+        const int k = width - 4 - j;
+        const uint4 seen = blend(layers->color + a, layers->color + b, base + j, point_y - above);
+        const uint4 hidden = blend(layers->hidden_color + a, layers->hidden_color + b, base + j, point_y - above);
+        *(__global uint4_any *)(row->color + j) = seen;
+        *(__global uint4_any *)(row->hidden_color + j) = hidden;
+        *(__global uint4_any *)(mirrored->color + k) = seen.s3210;
+        *(__global uint4_any *)(mirrored->hidden_color + k) = hidden.s3210;
     }
+    repeat_ends(row->color, begin, end, width);
+    repeat_ends(row->hidden_color, begin, end, width);
+    repeat_ends(mirrored->color, width - end, width - begin, width);
+    repeat_ends(mirrored->hidden_color, width - end, width - begin, width);
 }
 
 /* The colour between two pixels. */

@@ -11,7 +11,8 @@ namespace dff {
 
 namespace {
 
-constexpr size_t strips = 64; /* of light_field_shrink.cl */
+constexpr size_t strips = 64;     /* of light_field_shrink.cl */
+constexpr size_t read_behind = 3; /* pixels, by light_field_row.cl */
 
 float step_of(const LightFieldGeometry &geometry)
 {
@@ -70,7 +71,7 @@ LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size, Picture
     raise_roof_ = Program(queue.device(), "light_field_roof").kernel("raise_roof");
     const size_t pixels = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
     for (cl::Buffer *buffer : {&color_, &height_, &hidden_color_, &hidden_height_, &grounds_})
-        *buffer = queue.allocate(4 * pixels);
+        *buffer = queue.allocate(4 * (pixels + read_behind));
     const auto [roof_columns, roof_rows] = roof_size(size);
     roof_ = queue.allocate(roof_columns * roof_rows * sizeof(cl_float));
 }

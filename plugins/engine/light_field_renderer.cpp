@@ -25,8 +25,8 @@ cl_int channels_of(PixelFormat format)
 
 /* light_field_row.cl and light_field_lenses.cl */
 constexpr unsigned strips = 64;
-constexpr unsigned bins = 4;
-constexpr unsigned bin_steps = 64;
+constexpr unsigned bins = 8;
+constexpr unsigned bin_steps = 32;
 
 constexpr unsigned pitch_of(unsigned width)
 {
@@ -141,10 +141,9 @@ void LightFieldRenderer::prepare_rows()
     columns_ = geometry_.columns();
     const unsigned pitch = pitch_of(static_cast<unsigned>(columns_.count));
     const unsigned view_pitch = pitch_of(static_cast<unsigned>(geometry_.view.x));
-    const unsigned panel_pitch = pitch_of(3 * shape_.output.width);
     const bool lenticular = parameters_.layout == LightFieldLayout::Lenticular;
-    scratch_size_ = static_cast<cl_int>(
-        8 * pitch + (lenticular ? (bins + 2) * pitch + panel_pitch : 2 * pitch + 5 * view_pitch));
+    scratch_size_ =
+        static_cast<cl_int>(8 * pitch + (lenticular ? (bins + 2) * pitch : 2 * pitch + 5 * view_pitch));
     scratch_ = queue_.allocate(strips * sizeof(cl_uint) * static_cast<size_t>(scratch_size_));
 }
 
