@@ -13,7 +13,8 @@
  * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.
  *
  * The OpenCL device is shared with the neighbours, or given by the application: see
- * gst_context_new_dff_device().
+ * gst_context_new_dff_device(). While a first stack takes over a second, as it does when kernels have to be
+ * compiled, progress messages with the code "kernels" say so. A live pipeline's latency does not count that.
  *
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! dffdepth ! videoconvert ! fakesink
@@ -24,9 +25,11 @@
 #include "depth_statistics.h"
 #include "dffdepth_properties.h"
 #include "engine_caps.h"
+#include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
+#include "gstcl/start_progress.h"
 #include "output_pads.h"
 #include "stack_depth.h"
 
@@ -52,7 +55,7 @@ struct State {
     dff::DepthSettings settings;
     bool settings_changed = true;
     dff::DepthStatistics statistics;
-    GstClockTime latency = 0;
+    dff::ComputeLatency latency;
 
     dff::OutputPads outputs;
     dff::DeviceContext device;
@@ -105,19 +108,17 @@ static std::optional<dff::DepthSettings> changed_settings(State &state)
     return state.settings;
 }
 
-/* Announces a new latency when the computing takes notably longer than was said. */
-static void account(GstDffDepth *self, GstClockTime compute_time, bool known)
+/* Counts a stack, and announces the latency if it has grown. */
+static void account(GstDffDepth *self, GstClockTime compute_time, bool is_first, bool known)
 {
     State &state = *self->state;
-    bool slower = false;
+    bool has_grown = false;
     {
         const std::lock_guard lock(state.mutex);
         state.statistics.add(state.depth, known, compute_time);
-        slower = compute_time > state.latency + state.latency / 4 + GST_MSECOND;
-        if (slower)
-            state.latency = compute_time;
+        has_grown = state.latency.add(compute_time, is_first);
     }
-    if (slower)
+    if (has_grown)
         gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
@@ -151,15 +152,20 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         const dff::MappedStack mapped(state.depth.stack(), stack, state.depth.device());
         if (const auto settings = changed_settings(state))
             state.depth.set_settings(*settings);
+        const bool is_first = !state.depth.has_engine();
+        std::optional<dff::StartProgress> progress;
+        if (is_first)
+            progress.emplace(GST_ELEMENT(self));
         const GstDepthInfo depth = state.depth.prepare(stack, state.next_stack);
         dff::DepthMaps maps(state.outputs.outputs(), state.depth.stack().frame, depth, state.segment);
 
         const GstClockTime start = gst_util_get_timestamp();
         const bool known = compute(self, mapped.view(), stack, maps);
+        progress.reset();
         if (!known)
             maps.blank();
         maps.stamp(stack, state.next_stack);
-        account(self, gst_util_get_timestamp() - start, known);
+        account(self, gst_util_get_timestamp() - start, is_first, known);
         state.next_stack++;
         return state.outputs.push(maps);
     } catch (const dff::EngineError &error) {
@@ -249,8 +255,8 @@ static gboolean gst_dff_depth_query(GstPad *pad, GstObject *parent, GstQuery *qu
         return FALSE;
     gst_query_parse_latency(query, &live, &least, &most);
     const std::lock_guard lock(state.mutex);
-    gst_query_set_latency(query, live, least + state.latency,
-                          GST_CLOCK_TIME_IS_VALID(most) ? most + state.latency : most);
+    const GstClockTime own = state.latency.get();
+    gst_query_set_latency(query, live, least + own, GST_CLOCK_TIME_IS_VALID(most) ? most + own : most);
     return TRUE;
 }
 
@@ -332,7 +338,7 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
         state.outputs.restart();
         const std::lock_guard lock(state.mutex);
         state.statistics = {};
-        state.latency = 0;
+        state.latency.reset();
     }
     if (transition == GST_STATE_CHANGE_READY_TO_NULL) {
         state.depth.stop();

@@ -30,6 +30,9 @@ public:
     void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
     const GstFocalStackInfo &stack() const { return stack_; }
 
+    /* False until the first stack after start or another setting or format. */
+    bool has_engine() const { return engine_ != nullptr; }
+
     /* Makes the engine ready for `stack`, the `index`-th of its stream, and returns the facts of its depth
      * map. Throws EngineError, or std::invalid_argument with a user's text if the unit cannot be had for this
      * stack. */

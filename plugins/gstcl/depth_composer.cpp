@@ -5,6 +5,7 @@
 #include "gstcl/engine_message.h"
 
 #include <gst/video/video.h>
+#include <utility>
 
 namespace dff {
 
@@ -65,7 +66,7 @@ void DepthComposer::stop()
     has_main_caps_ = false;
     const std::lock_guard lock(mutex);
     pictures_ = without_depth_ = 0;
-    latency_ = 0;
+    latency_.reset();
 }
 
 GstFlowReturn DepthComposer::aggregate()
@@ -92,7 +93,7 @@ GstFlowReturn DepthComposer::compose_and_push(GstBuffer *main, GstBuffer *depth)
     try {
         const GstClockTime start = gst_util_get_timestamp();
         GstBuffer *picture = compose(main, depth);
-        account(gst_util_get_timestamp() - start, depth != nullptr);
+        account(gst_util_get_timestamp() - start, std::exchange(has_new_caps_, false), depth != nullptr);
         gst_aggregator_selected_samples(element_, GST_BUFFER_PTS(picture), GST_BUFFER_DTS(picture),
                                         GST_BUFFER_DURATION(picture), nullptr);
         return gst_aggregator_finish_buffer(element_, picture);
@@ -104,19 +105,17 @@ GstFlowReturn DepthComposer::compose_and_push(GstBuffer *main, GstBuffer *depth)
     return GST_FLOW_ERROR;
 }
 
-void DepthComposer::account(GstClockTime compute_time, bool with_depth)
+void DepthComposer::account(GstClockTime compute_time, bool is_first, bool with_depth)
 {
-    GstClockTime latency = 0;
     {
         const std::lock_guard lock(mutex);
         pictures_++;
         without_depth_ += !with_depth;
         compute_time_ = compute_time;
-        if (compute_time <= latency_ + latency_ / 4 + GST_MSECOND)
+        if (!latency_.add(compute_time, is_first))
             return;
-        latency = latency_ = compute_time;
     }
-    gst_aggregator_set_latency(element_, latency, latency);
+    gst_aggregator_set_latency(element_, compute_time, compute_time);
 }
 
 std::optional<bool> DepthComposer::sink_event(GstAggregatorPad *pad, GstEvent *event)
@@ -126,6 +125,7 @@ std::optional<bool> DepthComposer::sink_event(GstAggregatorPad *pad, GstEvent *e
         g_autoptr(GstEvent) taken = event;
         GstCaps *caps = nullptr;
         gst_event_parse_caps(taken, &caps);
+        has_new_caps_ = true;
         if (!is_main)
             return set_depth_caps(caps);
         if (!set_main_caps(caps))

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
 
 #include <gst/base/gstaggregator.h>
@@ -64,21 +65,24 @@ private:
     const gchar *kind() const;
     std::string device_wish();
     GstFlowReturn compose_and_push(GstBuffer *main, GstBuffer *depth);
-    void account(GstClockTime compute_time, bool with_depth);
+    void account(GstClockTime compute_time, bool is_first, bool with_depth);
 
     GstAggregator *element_; /* which owns this */
     GstAggregatorPad *main_pad_;
     GstAggregatorPad *depth_pad_;
     const char *needs_;
     DeviceContext device_;
-    bool has_main_caps_ = false; /* the streaming thread's own */
+
+    /* The streaming thread's own. */
+    bool has_main_caps_ = false;
+    bool has_new_caps_ = false;
 
     /* Under the mutex. */
     std::string device_wish_;
     guint64 pictures_ = 0;
     guint64 without_depth_ = 0;
     GstClockTime compute_time_ = 0;
-    GstClockTime latency_ = 0;
+    ComputeLatency latency_;
 };
 
 } // namespace dff
