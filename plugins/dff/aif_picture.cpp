@@ -5,9 +5,26 @@
 #include "gstcl/mapped_frame.h"
 #include "gstcl/mapped_stack.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace dff {
+
+namespace {
+
+bool is_same(double one, double other)
+{
+    return one == other || (std::isnan(one) && std::isnan(other));
+}
+
+/* What an encoder depends on. */
+bool have_same_scale(const GstDepthInfo &one, const GstDepthInfo &other)
+{
+    return one.unit == other.unit && one.scale == other.scale && one.offset == other.offset &&
+           is_same(one.near, other.near) && is_same(one.far, other.far);
+}
+
+} // namespace
 
 void AifPicture::stop()
 {
@@ -22,6 +39,12 @@ void AifPicture::set_stack(const GstFocalStackInfo &stack)
     stack_ = stack;
     composer_.reset();
     pool_.start(stack.frame);
+}
+
+void AifPicture::set_depth(const GstVideoInfo &depth, const GstDepthInfo &facts)
+{
+    depth_ = depth;
+    caps_facts_ = facts;
 }
 
 GstBuffer *AifPicture::compose(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend)
@@ -49,12 +72,10 @@ void AifPicture::ensure_composer()
 void AifPicture::ensure_encoder(GstBuffer *stack, GstBuffer *depth)
 {
     PlanePositions positions = plane_positions(stack);
-    GstDepthInfo info;
-    gst_depth_info_init(&info);
+    GstDepthInfo info = caps_facts_;
     if (const GstDepthMeta *meta = gst_buffer_get_depth_meta(depth))
         gst_depth_meta_get_depth(meta, &info);
-    if (scale_ && scale_->unit == info.unit && scale_->scale == info.scale && scale_->offset == info.offset &&
-        positions == positions_)
+    if (scale_ && have_same_scale(*scale_, info) && positions == positions_)
         return;
     composer_->set_encoder(encoder_of(info, stack_.planes, positions));
     positions_ = std::move(positions);

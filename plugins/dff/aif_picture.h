@@ -20,7 +20,8 @@ public:
 
     /* The caps of what comes from here on. */
     void set_stack(const GstFocalStackInfo &stack);
-    void set_depth(const GstVideoInfo &depth) { depth_ = depth; }
+    /* `facts` hold for depth maps without a GstDepthMeta. */
+    void set_depth(const GstVideoInfo &depth, const GstDepthInfo &facts);
     const GstFocalStackInfo &stack() const { return stack_; }
 
     /* Returns a picture with the stack's time. Without a depth map it is the mean of the planes.
@@ -38,6 +39,7 @@ private:
     PlanePositions positions_;
     GstFocalStackInfo stack_{};
     GstVideoInfo depth_{};
+    GstDepthInfo caps_facts_{};
     PicturePool pool_;
     std::vector<guint16> no_depth_; /* zeros, for stacks without a depth map */
     guint64 next_picture_ = 0;

@@ -108,9 +108,12 @@ bool State::set_main_caps(const GstCaps *caps)
 bool State::set_depth_caps(const GstCaps *caps)
 {
     GstVideoInfo info;
+    GstDepthInfo facts;
     if (!gst_video_info_from_caps(&info, caps))
         return false;
-    picture_.set_depth(info);
+    gst_depth_info_init(&facts);
+    gst_depth_info_from_caps(&facts, caps);
+    picture_.set_depth(info, facts);
     return true;
 }
 

@@ -212,3 +212,19 @@ TEST(AifCompose, pictures_too_small_for_the_kernels_are_refused)
     EXPECT_FALSE(outcome.end_of_stream);
     EXPECT_FALSE(outcome.error.empty());
 }
+
+TEST(AifCompose, depth_of_which_the_caps_alone_say_the_unit_gives_the_same_picture)
+{
+    const auto picture = [](const std::string &way) {
+        TestPipeline pipeline(
+            "lenssweeptestsrc num-buffers=6 near=5 far=0.5 ! video/x-raw,width=128,height=96 "
+            "! focalstackmux ! tee name=s  s. ! queue ! dffdepth unit=millimetre " +
+            way +
+            "! queue ! c.depth  s. ! queue ! c.stack  aifcompose name=c ! appsink "
+            "name=out sync=false");
+        pipeline.play();
+        g_autoptr(GstSample) sample = pipeline.pull("out");
+        return bytes_of(sample);
+    };
+    EXPECT_EQ(picture("! gdppay ! gdpdepay "), picture("")) << "GDP keeps caps, but no metas";
+}
