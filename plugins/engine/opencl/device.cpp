@@ -118,7 +118,8 @@ std::shared_ptr<Device> Device::open(const std::string &wish)
         throw EngineError(
             EngineError::Kind::NoDevice,
             "There is no OpenCL device. Install a driver: pocl-opencl-icd computes on the CPU, GPU makers "
-            "have their own; clinfo lists what is found");
+            "have their own; clinfo lists what is found. An installed PoCL gives none where its cache cannot "
+            "be written: set POCL_CACHE_DIR, or HOME, to a folder that can");
 
     const cl::Device chosen = choose(devices, wish);
     std::shared_ptr<Device> &device = open_devices[chosen.get()];

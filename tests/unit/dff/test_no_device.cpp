@@ -14,5 +14,6 @@ TEST(NoDevice, the_error_says_what_to_install)
             dff::run(std::string("lenssweeptestsrc num-buffers=6 ! focalstackmux ! ") + element, 20);
         EXPECT_NE(outcome.error.find("pocl-opencl-icd"), std::string::npos) << outcome.error;
         EXPECT_NE(outcome.error.find("clinfo"), std::string::npos) << outcome.error;
+        EXPECT_NE(outcome.error.find("POCL_CACHE_DIR"), std::string::npos) << outcome.error;
     }
 }
