@@ -28,7 +28,12 @@ ObjectRef<ArvCamera> open_camera(const std::string &name)
     CallError error;
     ArvCamera *camera = arv_camera_new(id.c_str(), error.out());
     error.check<CameraError>("the camera " + id + " cannot be opened (does another program use it?)");
-    return ObjectRef<ArvCamera>(camera);
+    ObjectRef<ArvCamera> opened(camera);
+    ArvDevice *device = arv_camera_get_device(camera);
+    if (ARV_IS_GV_DEVICE(device) && !arv_gv_device_is_controller(ARV_GV_DEVICE(device)))
+        throw CameraError("another program controls the camera " + id +
+                          ". End it; one that crashed holds the camera for some seconds more");
+    return opened;
 }
 
 std::vector<std::string> strings(const char **names, guint count)

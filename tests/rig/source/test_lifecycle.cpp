@@ -90,3 +90,18 @@ TEST(Lifecycle, a_camera_that_is_unplugged_is_an_error_and_can_come_back)
     EXPECT_TRUE(again.wait_for_frames(30, 10s)) << again.stats();
     EXPECT_EQ(stream.watched().wrong + again.watched().wrong, 0U);
 }
+
+TEST(Lifecycle, a_camera_that_another_program_controls_is_an_error_and_its_stream_goes_on)
+{
+    BenchProcess bench({"--size=160x120"});
+    WatchedStream first(bench.source() + sink);
+    first.play();
+    ASSERT_TRUE(first.wait_for_frames(30, 10s)) << first.stats();
+    WatchedStream second(bench.unwired_source() + " trigger=free-run" + sink);
+    gst_element_set_state(second.pipeline(), GST_STATE_PLAYING);
+    const auto end = second.wait_for_end(20s);
+    ASSERT_TRUE(end) << "neither error nor end";
+    EXPECT_NE(end->find("another program"), std::string::npos) << *end;
+    EXPECT_TRUE(first.wait_for_frames(first.watched().frames + 30, 10s)) << first.stats();
+    EXPECT_EQ(first.watched().wrong, 0U) << first.watched().first_wrong;
+}
