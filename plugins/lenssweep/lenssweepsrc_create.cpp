@@ -170,6 +170,20 @@ static gint64 deadline_of(GstLensSweepSrc *self)
                                                                   : last + static_cast<gint64>(timeout);
 }
 
+/* Where to look when no frame comes. */
+static std::string advice_on_silence(const dff::CaptureSettings &settings)
+{
+    switch (settings.trigger) {
+    case dff::TriggerKind::Line:
+        return "the sequencer runs and is wired to the camera's " + settings.trigger_source;
+    case dff::TriggerKind::Software:
+        return "the camera takes software triggers, and as many as planes times rate";
+    case dff::TriggerKind::FreeRun:
+        break;
+    }
+    return "trigger-timeout leaves time for a frame, and the camera sends any with arv-camera-test-0.8";
+}
+
 /* One step: a buffer, or null if none is there yet. */
 static GstFlowReturn step(GstLensSweepSrc *self, GstBuffer **buffer)
 {
@@ -179,12 +193,10 @@ static GstFlowReturn step(GstLensSweepSrc *self, GstBuffer **buffer)
         return GST_FLOW_NOT_NEGOTIATED;
     const gint64 deadline = deadline_of(self);
     if (dff::host_now_ns() >= deadline) {
-        GST_ELEMENT_ERROR(
-            self, RESOURCE, READ,
-            ("No frame came within trigger-timeout. Check that the sequencer runs and is wired to the "
-             "camera's %s.",
-             state.settings.trigger_source.c_str()),
-            (nullptr));
+        GST_ELEMENT_ERROR(self, RESOURCE, READ,
+                          ("No frame came within trigger-timeout. Check that %s.",
+                           advice_on_silence(state.settings).c_str()),
+                          (nullptr));
         return GST_FLOW_ERROR;
     }
     auto plane = state.capture->next(deadline);

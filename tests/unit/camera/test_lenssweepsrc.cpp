@@ -244,6 +244,7 @@ TEST(LensSweepSrc, trigger_timeout_is_an_error_that_says_what_to_look_at)
                                        "trigger-timeout=50000000 ! fakesink")
                                   .run();
     EXPECT_NE(error.find("trigger-timeout"), std::string::npos) << error;
+    EXPECT_EQ(error.find("sequencer"), std::string::npos) << "a camera that runs freely has none: " << error;
 }
 
 TEST(LensSweepSrc, errors_say_what_to_do)
