@@ -58,14 +58,6 @@ meson_tests() {
     [ "$bad" -eq 0 ] || grep -vE '^ *[0-9]+/[0-9]+ .* OK ' "$log" | tail -n 300
 }
 
-# tidy: clang-tidy's complaints, without the hundred notes around each.
-tidy() {
-    run-clang-tidy -p build-release -quiet -j 2 "$PWD/plugins/" 2>/dev/null | sed 's/\x1b\[[0-9;]*m//g' >build-release/tidy.log
-    local status=$?
-    grep -E ': (error|warning):' build-release/tidy.log
-    return $status
-}
-
 say "Checking that every package is installed"
 install_missing "${run_packages[@]}" "${build_packages[@]}" "${test_packages[@]}" || { failed=1; finish; }
 
@@ -88,7 +80,7 @@ check "clang-format" bash -c "git ls-files 'pipelines/rtsp/*.cpp' 'pipelines/rts
     xargs clang-format --dry-run -Werror"
 
 say "Checking the code with clang-tidy"
-check "clang-tidy" tidy
+check "clang-tidy" python3 tests/tidy.py build-release
 
 say "Checking the evaluation: its scores, and the elements on a small scene"
 check "evaluation" env BUILD=build-release tests/eval/run.sh --self-check
