@@ -15,12 +15,23 @@ using SharedDevice = std::shared_ptr<Device>;
 /* As in the contexts of GStreamer's own libraries, the open device's field has the name of the type. */
 constexpr const char *open_device_field = GST_DFF_DEVICE_CONTEXT_TYPE, *name_field = "device";
 
-GType shared_device_type()
+GType register_shared_device()
 {
-    static const GType type = g_boxed_type_register_static(
+    const GType type = g_boxed_type_register_static(
         "GstDffDevice",
         [](gpointer device) -> gpointer { return new SharedDevice(*static_cast<SharedDevice *>(device)); },
         [](gpointer device) { delete static_cast<SharedDevice *>(device); });
+    /* For those who print a context. */
+    g_value_register_transform_func(type, G_TYPE_STRING, [](const GValue *device, GValue *text) {
+        const auto *shared = static_cast<const SharedDevice *>(g_value_get_boxed(device));
+        g_value_set_string(text, shared ? (*shared)->name().c_str() : nullptr);
+    });
+    return type;
+}
+
+GType shared_device_type()
+{
+    static const GType type = register_shared_device();
     return type;
 }
 

@@ -187,3 +187,12 @@ TEST(DeviceContext, an_element_that_no_factory_made_works_too)
     gst_element_set_state(element, GST_STATE_NULL);
     GST_ELEMENT_GET_CLASS(element)->elementfactory = factory;
 }
+
+TEST(DeviceContext, names_its_device_where_it_is_printed)
+{
+    gst_init(nullptr, nullptr);
+    const std::shared_ptr<Device> device = Device::open("");
+    g_autoptr(GstContext) context = dff::make_device_context(device);
+    g_autofree gchar *printed = gst_structure_to_string(gst_context_get_structure(context));
+    EXPECT_EQ(std::string(printed).find("NULL"), std::string::npos) << printed;
+}
