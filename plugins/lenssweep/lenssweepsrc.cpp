@@ -37,8 +37,8 @@
  * gst-launch-1.0 lenssweepsrc camera=Fake_1 trigger=free-run rate=5 num-buffers=24 ! focalstackmux ! fakesink
  * ]| A camera that Aravis simulates; it ignores triggers and needs `trigger=free-run`. The one of
  * `arv-fake-gv-camera-0.8 -i lo`, behind real packets, has no lines either. It takes software triggers, but
- * exposes at the ticks of a clock of its own, 25 times a second: up to 40 ms after the trigger. Planes are told
- * by times that must be right within a quarter of a period, so that one has to be 160 ms or longer:
+ * exposes at the ticks of a clock of its own, 25 times a second: up to 40 ms after the trigger. Planes are
+ * told by times that must be right within a quarter of a period, so that one has to be 160 ms or longer:
  * `lenssweepsrc camera=Aravis-Fake-GV01 trigger=software planes=6 rate=1`. If it is shorter the stream ends
  * with an error after some sweeps without a frame.
  *
