@@ -24,8 +24,13 @@ static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
     }
     g_autoptr(GstCaps) chosen = stream.fixate(static_cast<GstCaps *>(g_steal_pointer(&common)));
     GstVideoInfo info;
-    if (!gst_video_info_from_caps(&info, chosen))
-        return GST_FLOW_NOT_NEGOTIATED;
+    if (!gst_video_info_from_caps(&info, chosen)) {
+        GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                          ("These pictures are too large. Put a smaller width and height into a capsfilter "
+                           "behind this element."),
+                          ("caps are %" GST_PTR_FORMAT, chosen));
+        return GST_FLOW_ERROR;
+    }
     g_autoptr(GstCaps) complete = gst_video_info_to_caps(&info);
     if (!change_caps(self->src_pad, complete))
         return GST_PAD_IS_FLUSHING(self->src_pad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;

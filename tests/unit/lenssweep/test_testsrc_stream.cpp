@@ -291,6 +291,8 @@ TEST(TestSrcErrors, say_what_to_do)
     EXPECT_NE(error_of("planes=64 blur-step=50").find("blur-step"), std::string::npos);
     EXPECT_NE(error_of("", " ! video/x-raw,framerate=7/1 ! fakesink").find("planes times rate"),
               std::string::npos);
+    EXPECT_NE(error_of("", " ! video/x-raw,width=40000,height=40000 ! fakesink").find("too large"),
+              std::string::npos);
     EXPECT_EQ(error_of(""), "");
 }
 
