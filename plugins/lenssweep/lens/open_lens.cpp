@@ -9,6 +9,7 @@
 #include "v4l2_lens.h"
 
 #include <cstdlib>
+#include <stdexcept>
 
 namespace dff {
 
@@ -38,6 +39,9 @@ LensProfile load_profile(const std::string &file)
 
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings)
 {
+    const bool has_profile = uri.kind == LensKind::Fpga || uri.kind == LensKind::Max14574;
+    if (!surroundings.profile.empty() && !has_profile)
+        throw std::invalid_argument("lens-profile goes with lens=fpga: and lens=max14574: only");
     switch (uri.kind) {
     case LensKind::Fpga:
         return std::make_unique<FpgaSweepLens>(std::make_unique<LinuxI2cBus>(uri.device, uri.address),

@@ -20,7 +20,7 @@ struct LensSurroundings {
 
 /* Opens a lens; what comes is a SequencedLens (fpga), a SteppedLens (max14574, genicam, v4l2), or a Lens that
  * nobody moves (none). Throws LensError if the device is missing or something else, std::invalid_argument for
- * a profile that cannot be used. */
+ * a profile that cannot be used, or given for a lens that has none. */
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings);
 
 } // namespace dff

@@ -259,6 +259,7 @@ TEST(LensSweepSrc, errors_say_what_to_do)
     EXPECT_NE(error("trigger=free-run lens=warp:drive").find("fpga"), std::string::npos);
     EXPECT_NE(error("trigger=free-run features=NoSuch=1").find("NoSuch"), std::string::npos);
     EXPECT_NE(error("trigger=free-run sync-line=SYNC").find("trigger=line"), std::string::npos);
+    EXPECT_NE(error("trigger=free-run lens-profile=/no/lens.yaml").find("lens=max14574:"), std::string::npos);
 }
 
 TEST(LensSweepSrc, an_exposure_longer_than_the_period_is_warned_of_with_the_figures)
