@@ -6,11 +6,13 @@
  *     F  = [.7t 2 .7t] / (2 + 1.4t) * focus, along z
  *     T  = max_z F,  S = T - min_z F
  *     C0 = (T0 - F0) / (T0 + 1.5 med T0 + 4)
- *     C  = C0 + (2 - t) (1 - k0)^2 (T1 - F1) / (S1 + 4 (med S1 + 0.5)),  k0 = S0 / (S0 + 0.5 (med S0 + 2))
+ *     C  = C0 + (1.4 - .4t) (1 - k0)^2 C1,     k0 = S0 / (S0 + 0.5 (med S0 + 2))
+ *     u0 = argmin_z C + 4 (1 - k0)^2 C2,       Ci = (Ti - Fi) / (Si + 4 (med S1 + 0.5))
  *
  * F0 is the fine band (focus_volume.cl); F1 the coarse one, SML with taps 2 apart of the blurred colours, which speaks
- * where the fine one is silent: in noise, and between blurred edges, which it still sees. Beside the costs a first guess:
- * u0 = argmin_z box(C0).
+ * where the fine one is silent: in noise, and between blurred edges, which it still sees. F2 is the mean of F1 around:
+ * within its reach edges count more where they are sharp than blurred ones do anywhere, so that the first guess u0 is
+ * right between edges, too, if not beside depth edges.
  *
  * Focus and costs are shorts, the sides of the costs are mirrored; T and S are floats in 1/FOCUS_ONE DN.
  */
@@ -97,60 +99,20 @@ __kernel void summarise(__global const float *first, __global const float *secon
     *largest = max(quarter.x, quarter.y) / FOCUS_ONE;
 }
 
-/* C0 of a row of one plane. */
-INLINE void cost_row(__global const short *focus, __global const float *top, size_t plane, int z, int planes, float side,
-                     float centre, float floor, __global short *cost, int width)
-{
-    for (int x = 0; x < width; x += 16) {
-        const float16 highest = READ_WIDE(top + x);
-        const float16 focused = smooth_focus(focus + x, plane, z, planes, side, centre);
-        SHORTS(cost + x) = to_wide_shorts(COST_ONE * (highest - focused) / (highest + floor));
-    }
-    mirror_short_ends(cost, width);
-}
-
-#define BOX 2       /* radius of the first guess's */
-#define RING 8      /* rows of sums kept */
-
-/* C0 of each plane, and the first guess u0 with mirrored sides. One work-item takes `strip` rows: work-items (1, strips);
- * scratch: RING + 1 + strip rows for each. */
+/* C0. Work-items (1, low height, planes). */
 __kernel void fine_cost(__global const short *focus, __global const float *top, __global const float *median_top,
-                        __global const Noise *noise, __global short *cost, __global short *guess,
-                        __global short *scratch, int width, int height, int stride, int planes, int strip)
+                        __global const Noise *noise, __global short *cost, int width, int stride)
 {
-    const int first = (int)get_global_id(1) * strip, last = min(first + strip, height);
-    const size_t plane = (size_t)height * stride;
+    const int z = (int)get_global_id(2), planes = (int)get_global_size(2);
+    const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
     const float floor = (1.5f * *median_top + 4.0f) * FOCUS_ONE;
     const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
-    __global short *sums = scratch + get_global_id(1) * (RING + 1 + strip) * (size_t)stride + SIDE;
-    __global short *beside = sums + RING * (size_t)stride, *least = beside + stride;
-
-    for (int z = 0; z < planes; z++)
-        for (int y = first - BOX; y < last + BOX; y++) {
-            const size_t row = (size_t)reflect(y, height) * stride + SIDE;
-            __global short *costs = y < first || y >= last ? beside : cost + z * plane + row;
-            cost_row(focus + row, top + row, plane, z, planes, side, centre, floor, costs, width);
-            __global short *newest = sums + (size_t)((y + RING) % RING) * stride;
-            for (int x = 0; x < width; x += 16)
-                SHORTS(newest + x) = READ_SHORTS(costs + x - 2) + READ_SHORTS(costs + x - 1) + READ_SHORTS(costs + x) +
-                                     READ_SHORTS(costs + x + 1) + READ_SHORTS(costs + x + 2);
-            const int done = y - BOX;
-            if (done < first)
-                continue;
-            __global short *best = guess + (size_t)done * stride + SIDE;
-            __global short *best_sum = least + (size_t)(done - first) * stride;
-            for (int x = 0; x < width; x += 16) {
-                short16 sum = 0;
-                UNROLL
-                for (int j = -BOX; j <= BOX; j++)
-                    sum += READ_SHORTS(sums + (size_t)((done + j + RING) % RING) * stride + x);
-                const short16 before = z == 0 ? (short16)SHRT_MAX : READ_SHORTS(best_sum + x);
-                SHORTS(best + x) = select(z == 0 ? (short16)0 : READ_SHORTS(best + x), (short16)(short)z, sum < before);
-                SHORTS(best_sum + x) = min(sum, before);
-            }
-            if (z == planes - 1)
-                mirror_short_ends(best, width);
-        }
+    __global short *costs = cost + z * plane + row;
+    for (int x = 0; x < width; x += 16) {
+        const float16 highest = READ_WIDE(top + row + x);
+        const float16 focused = smooth_focus(focus + row + x, plane, z, planes, side, centre);
+        SHORTS(costs + x) = to_wide_shorts(COST_ONE * (highest - focused) / (highest + floor));
+    }
 }
 
 #define COARSE_BOX 3 /* radius */
@@ -177,8 +139,8 @@ INLINE void blur_row(__global const short *small, int y, int height, __global us
     mirror_short_ends((__global short *)blurred, width);
 }
 
-/* F1 before it is smoothed along z: the mean over the colours of SML with taps 2 apart, in a box. One work-item takes
- * `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each.
+/* F1 before it is smoothed along z, its sides mirrored: the mean over the colours of SML with taps 2 apart, in a box.
+ * One work-item takes `strip` rows of one plane: work-items (1, strips, planes); scratch: 2 (strip + 10) rows for each.
  *
  * A blurred colour is in 1/(8 COLOUR_ONE) DN, the half of its SML at most 9/8 of 255 DN; SML of all colours is kept in
  * 1/4 DN, seven of which fit 16 bits. */
@@ -236,7 +198,18 @@ __kernel void coarse_focus(__global const short *small, __global short *focus, _
             SHORTS(focus + z * picture + (size_t)y * stride + SIDE + x) =
                 as_short16(PART_OF(sum, 65536 * FOCUS_ONE / 4 / 3 / (2 * COARSE_BOX + 1)));
         }
+        mirror_short_ends(focus + z * picture + (size_t)y * stride + SIDE, width);
     }
+}
+
+#define SILENCE(medians) (0.5f * ((medians)[1] + 2.0f) * FOCUS_ONE)
+#define COARSE_FLOOR(medians) (4.0f * ((medians)[1] + 0.5f) * FOCUS_ONE)
+
+/* (1 - k0)^2, k0 by the range S0. */
+INLINE float16 silence_of(float16 fine_range, float silence)
+{
+    const float16 silent = silence / (fine_range + silence);
+    return silent * silent;
 }
 
 /* C from C0, in place. medians: of S0 and of S1, the second of two each. Work-items (1, low height, planes). */
@@ -247,14 +220,62 @@ __kernel void add_coarse_cost(__global const short *focus, __global const float 
 {
     const int z = (int)get_global_id(2), planes = (int)get_global_size(2);
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    const float silence = 0.5f * (fine_medians[1] + 2.0f) * FOCUS_ONE, floor = 4.0f * (medians[1] + 0.5f) * FOCUS_ONE;
-    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise), share = (2.0f - noise->t) * COST_ONE;
+    const float silence = SILENCE(fine_medians), floor = COARSE_FLOOR(medians);
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
+    const float share = COST_ONE * (1.4f - 0.4f * noise->t);
     __global short *costs = cost + z * plane + row;
     for (int x = 0; x < width; x += 16) {
-        const float16 silent = silence / (READ_WIDE(fine_range + row + x) + silence); /* 1 - k0 */
         const float16 focused = smooth_focus(focus + row + x, plane, z, planes, side, centre);
         const float16 coarse = (READ_WIDE(top + row + x) - focused) / (READ_WIDE(range + row + x) + floor);
-        SHORTS(costs + x) += to_wide_shorts(share * silent * silent * coarse);
+        SHORTS(costs + x) += to_wide_shorts(share * silence_of(READ_WIDE(fine_range + row + x), silence) * coarse);
     }
     mirror_short_ends(costs, width);
+}
+
+/* F2 before it is smoothed along z: the mean of 3x3 values of F1, `spacing` <= 8 cells apart, whose own boxes of 7x7
+ * fill the square between them. Work-items (1, low height, planes). */
+__kernel void widen_focus(__global const short *focus, __global short *wide, int spacing, int width, int stride)
+{
+    const int y = (int)get_global_id(1), height = (int)get_global_size(1);
+    const size_t plane = get_global_id(2) * (size_t)height * stride + SIDE;
+    __global const short *above = focus + plane + (size_t)reflect(y - spacing, height) * stride;
+    __global const short *here = focus + plane + (size_t)y * stride;
+    __global const short *below = focus + plane + (size_t)reflect(y + spacing, height) * stride;
+    __global short *out = wide + plane + (size_t)y * stride;
+    for (int x = 0; x < width; x += 16) {
+        ushort16 sum = 4; /* of eighths, nine of which fit 16 bits */
+        UNROLL
+        for (int i = -1; i <= 1; i++) {
+            const int column = x + i * spacing;
+            sum += (READ_USHORTS(above + column) >> (ushort)3) + (READ_USHORTS(here + column) >> (ushort)3) +
+                   (READ_USHORTS(below + column) >> (ushort)3);
+        }
+        SHORTS(out + x) = as_short16(PART_OF(sum, 65536 * 8 / 9));
+    }
+}
+
+/* u0, its sides mirrored. focus, top, range: of F2; medians as above. Work-items (1, low height). */
+__kernel void first_guess(__global const short *cost, __global const short *focus, __global const float *top,
+                          __global const float *fine_range, __global const float *range,
+                          __global const float *fine_medians, __global const float *medians,
+                          __global const Noise *noise, __global short *guess, int width, int stride, int planes)
+{
+    const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
+    const float silence = SILENCE(fine_medians), floor = COARSE_FLOOR(medians);
+    const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
+    for (int x = 0; x < width; x += 16) {
+        const float16 highest = READ_WIDE(top + row + x);
+        const float16 share = 4.0f * COST_ONE * silence_of(READ_WIDE(fine_range + row + x), silence) /
+                              (READ_WIDE(range + row + x) + floor);
+        float16 least = INFINITY;
+        short16 best = 0;
+        for (int z = 0; z < planes; z++) {
+            const float16 focused = smooth_focus(focus + row + x, plane, z, planes, side, centre);
+            const float16 value = READ_WIDE_SHORTS(cost + z * plane + row + x) + share * (highest - focused);
+            best = select(best, (short16)(short)z, convert_short16(value < least));
+            least = min(least, value);
+        }
+        SHORTS(guess + row + x) = best;
+    }
+    mirror_short_ends(guess + row, width);
 }

@@ -202,3 +202,28 @@ __kernel void filter_costs(__global const short *cost, __global const float *gui
     else
         filter_strip(cost + plane, guide, system, filtered + plane, own, first, last, 1, 0.0f, width, height, stride);
 }
+
+/* Cells that are nearer by their filtered cost than the first guess has its nearest around them are not believed: what
+ * would lie before its surroundings has edges that are sharp there. Their costs times 1 - (1 - t) d, d = nearer -
+ * argmin_z filtered - 1 within 0..1; the matching then brings depth from around. `nearer` is that of guide_image.cl.
+ * Work-items (1, low height). */
+__kernel void doubt_nearer(__global short *filtered, __global const float *nearer, __global const Noise *noise,
+                           int width, int stride, int planes)
+{
+    const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
+    for (int x = 0; x < width; x += 16) {
+        __global short *costs = filtered + row + x;
+        short16 least = SHRT_MAX, best = 0;
+        for (int z = 0; z < planes; z++) {
+            const short16 value = READ_SHORTS(costs + z * plane);
+            best = select(best, (short16)(short)z, value < least);
+            least = min(least, value);
+        }
+        const float16 doubt = clamp(READ_WIDE(nearer + row + x) - convert_float16(best) - 1.0f, 0.0f, 1.0f);
+        if (!any_of(doubt > 0.0f))
+            continue;
+        const float16 share = 1.0f - (1.0f - noise->t) * doubt;
+        for (int z = 0; z < planes; z++)
+            SHORTS(costs + z * plane) = to_wide_shorts(share * READ_WIDE_SHORTS(costs + z * plane));
+    }
+}

@@ -4,16 +4,13 @@
 
 #include "engine/opencl/program.h"
 
+#include <algorithm>
+
 namespace dff {
 
 namespace {
 
-/* Rows of scratch, as the kernels count them. */
-size_t fine_rows(const LowShape &low)
-{
-    return low.strips() * static_cast<size_t>(8 + 1 + low.strip);
-}
-
+/* Rows of scratch, as coarse_focus() counts them. */
 size_t coarse_rows(const LowShape &low)
 {
     return low.strips() * static_cast<size_t>(low.planes) * 2 * static_cast<size_t>(low.strip + 10);
@@ -21,12 +18,17 @@ size_t coarse_rows(const LowShape &low)
 
 } // namespace
 
+cl_int CostVolume::guess_spacing(cl_int width)
+{
+    return std::clamp((width + 27) / 55 - 3, 1, 8);
+}
+
 CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), medians_(queue.allocate(2 * sizeof(cl_float))),
       coarse_medians_(queue.allocate(2 * sizeof(cl_float))), largest_range_(queue.allocate(sizeof(cl_float))),
       largest_coarse_range_(queue.allocate(sizeof(cl_float))), cost_(low.allocate_shorts(queue, low.planes)),
       guess_(low.allocate_shorts(queue, 1)), coarse_(low.allocate_shorts(queue, low.planes)),
-      scratch_(low.allocate_rows(queue, fine_rows(low), sizeof(cl_short))),
+      wide_(low.allocate_shorts(queue, low.planes)),
       coarse_scratch_(low.allocate_rows(queue, coarse_rows(low), sizeof(cl_ushort)))
 {
     const Program program(queue.device(), "cost_volume");
@@ -35,20 +37,22 @@ CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
     fine_cost_ = program.kernel("fine_cost");
     coarse_focus_ = program.kernel("coarse_focus");
     add_coarse_cost_ = program.kernel("add_coarse_cost");
-    for (cl::Buffer *picture : {&top_, &range_, &coarse_top_, &coarse_range_})
+    widen_focus_ = program.kernel("widen_focus");
+    first_guess_ = program.kernel("first_guess");
+    for (cl::Buffer *picture : {&top_, &range_, &coarse_top_, &coarse_range_, &wide_top_, &wide_range_})
         *picture = low.allocate(queue, 1);
 }
 
 uint64_t CostVolume::scratch_bytes(const LowShape &low)
 {
-    return static_cast<uint64_t>(low.stride) *
-           (fine_rows(low) * sizeof(cl_short) + coarse_rows(low) * sizeof(cl_ushort));
+    return static_cast<uint64_t>(low.stride) * coarse_rows(low) * sizeof(cl_ushort);
 }
 
 void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise)
 {
     run_fine(focus, noise);
     run_coarse(small, noise);
+    run_guess(noise);
 }
 
 void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
@@ -58,8 +62,8 @@ void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
                low_.stride, low_.planes);
     queue_.run(summarise_, {1, 2}, top_, range_, medians_, largest_range_, low_.width, low_.height,
                low_.stride);
-    queue_.run(fine_cost_, low_.strips_of(1), focus.volume(), top_, medians_, noise.noise(), cost_, guess_,
-               scratch_, low_.width, low_.height, low_.stride, low_.planes, low_.strip);
+    queue_.run(fine_cost_, low_.rows_of_planes(), focus.volume(), top_, medians_, noise.noise(), cost_,
+               low_.width, low_.stride);
 }
 
 void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise)
@@ -73,6 +77,17 @@ void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise
                low_.width, low_.height, low_.stride);
     queue_.run(add_coarse_cost_, low_.rows_of_planes(), coarse_, coarse_top_, range_, coarse_range_, medians_,
                coarse_medians_, noise.noise(), cost_, low_.width, low_.stride);
+}
+
+void CostVolume::run_guess(const NoiseEstimate &noise)
+{
+    queue_.begin_stage("first-guess");
+    queue_.run(widen_focus_, low_.rows_of_planes(), coarse_, wide_, guess_spacing(low_.width), low_.width,
+               low_.stride);
+    queue_.run(find_evidence_, low_.rows(), wide_, noise.noise(), wide_top_, wide_range_, low_.width,
+               low_.stride, low_.planes);
+    queue_.run(first_guess_, low_.rows(), cost_, wide_, wide_top_, range_, wide_range_, medians_,
+               coarse_medians_, noise.noise(), guess_, low_.width, low_.stride, low_.planes);
 }
 
 } // namespace dff

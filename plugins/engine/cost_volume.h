@@ -21,20 +21,30 @@ public:
     const cl::Buffer &cost() const { return cost_; }         /* [z]: C */
     const cl::Buffer &first_guess() const { return guess_; } /* u0 */
 
+    /* F1 and F2 before they are smoothed along z. */
+    const cl::Buffer &coarse_focus() const { return coarse_; }
+    const cl::Buffer &wide_focus() const { return wide_; }
+
     /* float: the largest S0 of any cell, DN. */
     const cl::Buffer &evidence() const { return largest_range_; }
 
-    /* The two halves of run(). C is C0 in between. */
+    /* The parts of run(). C is C0 after the first. */
     void run_fine(const FocusVolume &focus, const NoiseEstimate &noise);
     void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise);
+    void run_guess(const NoiseEstimate &noise);
+
+    /* Cells between the values of F1 that F2 is the mean of: blur reaches as far as a part of the picture's
+     * width. */
+    static cl_int guess_spacing(cl_int width);
 
 private:
     CommandQueue &queue_;
     LowShape low_;
-    cl::Kernel find_evidence_, summarise_, fine_cost_, coarse_focus_, add_coarse_cost_;
+    cl::Kernel find_evidence_, summarise_, fine_cost_, coarse_focus_, add_coarse_cost_, widen_focus_,
+        first_guess_;
     cl::Buffer top_, range_, coarse_top_, coarse_range_, medians_, coarse_medians_, largest_range_,
-        largest_coarse_range_;
-    cl::Buffer cost_, guess_, coarse_, scratch_, coarse_scratch_;
+        largest_coarse_range_, wide_top_, wide_range_;
+    cl::Buffer cost_, guess_, coarse_, wide_, coarse_scratch_;
 };
 
 } // namespace dff

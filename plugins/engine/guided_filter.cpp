@@ -22,6 +22,7 @@ GuidedFilter::GuidedFilter(CommandQueue &queue, const LowShape &low)
     const Program program(queue.device(), "guided_filter");
     guide_system_ = program.kernel("guide_system");
     filter_costs_ = program.kernel("filter_costs");
+    doubt_nearer_ = program.kernel("doubt_nearer");
 }
 
 uint64_t GuidedFilter::scratch_bytes(const LowShape &low)
@@ -36,6 +37,13 @@ void GuidedFilter::run(const cl::Buffer &cost, const cl::Buffer &guide, const No
                low_.height, low_.stride, low_.strip);
     queue_.run(filter_costs_, low_.strips_of(low_.planes), cost, guide, system_, noise.noise(), filtered_,
                scratch_, low_.width, low_.height, low_.stride, low_.strip);
+}
+
+void GuidedFilter::doubt(const cl::Buffer &nearer, const NoiseEstimate &noise)
+{
+    queue_.begin_stage("doubt");
+    queue_.run(doubt_nearer_, low_.rows(), filtered_, nearer, noise.noise(), low_.width, low_.stride,
+               low_.planes);
 }
 
 } // namespace dff

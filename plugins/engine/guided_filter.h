@@ -18,12 +18,15 @@ public:
     /* The sides of cost and guide must be mirrored. */
     void run(const cl::Buffer &cost, const cl::Buffer &guide, const NoiseEstimate &noise);
 
+    /* Lets cells count less that are nearer by their filtered cost than by `nearer`, GuideImage's. */
+    void doubt(const cl::Buffer &nearer, const NoiseEstimate &noise);
+
     const cl::Buffer &filtered() const { return filtered_; } /* low pictures short [z] */
 
 private:
     CommandQueue &queue_;
     LowShape low_;
-    cl::Kernel guide_system_, filter_costs_;
+    cl::Kernel guide_system_, filter_costs_, doubt_nearer_;
     cl::Buffer system_, scratch_, filtered_;
 };
 

@@ -17,7 +17,7 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 10 * planes + 5 + 2 * 26; /* of shorts; one of floats is two */
+    const uint64_t pictures = 11 * planes + 5 + 2 * 28; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const bool is_interleaved_or_16 =
         shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;
@@ -35,6 +35,7 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     cost_.run(focus_, small_, noise_);
     guide_.run(cost_, small_, noise_);
     filter_.run(cost_.cost(), guide_.guide(), noise_);
+    filter_.doubt(guide_.nearer(), noise_);
     matching_.run(filter_.filtered(), guide_.guide(), noise_);
     fill_.run(matching_);
     guide_.run_at(matching_.u(), small_, noise_);

@@ -40,12 +40,18 @@ TestStack two_halves(const StackShape &shape, float left, float right, float noi
     return stack;
 }
 
-/* Stripes of a bar code behind the far end of the sweep: no plane has them sharp, the last one least blurred.
- */
-TestStack blurred_stripes(const StackShape &shape)
+/* How a bar code behind the far end of the sweep was taken: no plane has it sharp, the last one least
+ * blurred. */
+struct Stripes {
+    float narrowest, widest; /* pixels */
+    float blur, blur_step;   /* sigma in the last plane, and what each plane before it adds; pixels */
+    float shot_noise;        /* noise a DN of brightness, times 4 */
+};
+
+TestStack blurred_stripes(const StackShape &shape, const Stripes &stripes)
 {
     std::mt19937 random(5);
-    std::uniform_real_distribution<float> stripe_width(24.0f, 60.0f);
+    std::uniform_real_distribution<float> stripe_width(stripes.narrowest, stripes.widest);
     std::normal_distribution<float> grain(0.0f, 0.25f);
     std::vector<float> edges;
     for (float x = 0.0f; x < static_cast<float>(shape.width); x += stripe_width(random))
@@ -53,7 +59,7 @@ TestStack blurred_stripes(const StackShape &shape)
 
     TestStack stack(shape);
     for (unsigned z = 0; z < shape.planes; z++) {
-        const float sigma = 8.0f + 2.0f * static_cast<float>(shape.planes - 1 - z);
+        const float sigma = stripes.blur + stripes.blur_step * static_cast<float>(shape.planes - 1 - z);
         for (unsigned x = 0; x < shape.width; x++) {
             float value = 60.0f;
             for (size_t i = 0; i < edges.size(); i++)
@@ -61,7 +67,8 @@ TestStack blurred_stripes(const StackShape &shape)
                     (i % 2 ? -60.0f : 60.0f) * (1.0f + std::erf((static_cast<float>(x) - edges[i]) / sigma));
             for (unsigned y = 0; y < shape.height; y++)
                 stack.memory[stack.layout[z].offset + stack.layout[z].stride * y + x] =
-                    static_cast<std::byte>(std::clamp(value + grain(random), 0.0f, 255.0f));
+                    static_cast<std::byte>(std::clamp(
+                        value + (1.0f + stripes.shot_noise * value) * grain(random), 0.0f, 255.0f));
         }
     }
     return stack;
@@ -178,15 +185,25 @@ TEST(VolumeMethod, what_has_no_texture_is_smooth_and_says_so)
     EXPECT_EQ(result.sparse[size_t{20} * shape.width + 20], result.depth[size_t{20} * shape.width + 20]);
 }
 
-/* Takes planes one by one from each of two stacks in turn, as a rolling window does; then three at once. */
 TEST(VolumeMethod, stripes_nowhere_in_focus_lie_where_they_are_least_blurred)
 {
     const StackShape shape{PixelFormat::Gray8, 400, 160, 7};
-    const Result result = compute(blurred_stripes(shape));
+    const Result result = compute(blurred_stripes(shape, {24.0f, 60.0f, 8.0f, 2.0f, 0.0f}));
     const auto near = std::count_if(result.u.begin(), result.u.end(), [](double u) { return u < 5.0; });
     EXPECT_LT(near, static_cast<std::ptrdiff_t>(result.u.size() / 10));
 }
 
+/* Their middle shows nothing but noise and what blur brings there in the near planes; bright parts are the
+ * noisier. */
+TEST(VolumeMethod, wide_stripes_lie_where_their_edges_are_least_blurred)
+{
+    const StackShape shape{PixelFormat::Gray8, 2000, 256, 7};
+    const Result result = compute(blurred_stripes(shape, {80.0f, 120.0f, 6.0f, 4.0f, 0.01f}));
+    const auto near = std::count_if(result.u.begin(), result.u.end(), [](double u) { return u < 5.0; });
+    EXPECT_LT(near, static_cast<std::ptrdiff_t>(result.u.size() / 20));
+}
+
+/* Takes planes one by one from each of two stacks in turn, as a rolling window does; then three at once. */
 TEST(VolumeMethod, a_rolling_window_has_the_depth_of_whole_stacks)
 {
     const StackShape shape{PixelFormat::I420, 160, 121, 6};

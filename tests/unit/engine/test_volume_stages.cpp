@@ -128,6 +128,7 @@ protected:
         cost_stage.run(focus_stage, small_stage, noise_stage);
         guide_stage.run(cost_stage, small_stage, noise_stage);
         filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
+        filter_stage.doubt(guide_stage.nearer(), noise_stage);
         matching.run(filter_stage.filtered(), guide_stage.guide(), noise_stage);
     }
 
@@ -211,14 +212,25 @@ void VolumeStages::expect_cost_volume()
     const Volume fine_cost = twin::fine_cost(fine, twin::median(twin::top_of(fine).values));
     const Volume found = read_shorts(cost_stage.cost(), shape.planes, 1024);
     expect_alike(found, fine_cost, 0.02f);
-    expect_mostly(read_shorts(cost_stage.first_guess(), 1, 1), twin::first_guess(found), 0.0f);
 
     cost_stage.run_coarse(small_stage, noise_stage);
     const Volume coarse = twin::smooth_along_z(twin::coarse_focus(small), noise.t);
-    expect_alike(read_shorts(cost_stage.cost(), shape.planes, 1024),
-                 twin::cost(fine_cost, fine, coarse, twin::median(twin::range_of(fine).values),
-                            twin::median(twin::range_of(coarse).values), noise.t),
-                 0.03f, 2);
+    const float median_fine_range = twin::median(twin::range_of(fine).values),
+                median_range = twin::median(twin::range_of(coarse).values);
+    const Volume cost = read_shorts(cost_stage.cost(), shape.planes, 1024);
+    expect_alike(cost, twin::cost(fine_cost, fine, coarse, median_fine_range, median_range, noise.t), 0.03f,
+                 2);
+
+    cost_stage.run_guess(noise_stage);
+    const Volume wide = read_shorts(cost_stage.wide_focus(), shape.planes, 32);
+    expect_alike(wide,
+                 twin::widen(read_shorts(cost_stage.coarse_focus(), shape.planes, 32),
+                             CostVolume::guess_spacing(low.width)),
+                 0.3f);
+    expect_mostly(
+        read_shorts(cost_stage.first_guess(), 1, 1),
+        twin::first_guess(cost, fine, twin::smooth_along_z(wide, noise.t), median_fine_range, median_range),
+        0.0f);
 }
 
 void VolumeStages::expect_guide_image()
@@ -235,9 +247,14 @@ void VolumeStages::expect_guide_image()
 void VolumeStages::expect_guided_filter_and_matching()
 {
     const twin::Colours guide = read_guide();
-    const Volume filtered = read_shorts(filter_stage.filtered(), shape.planes, 1024);
     const Volume cost = read_shorts(cost_stage.cost(), shape.planes, 1024);
-    expect_alike(filtered, twin::guided_filter(cost, guide, noise.t), 0.01f);
+    filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
+    const Volume undoubted = read_shorts(filter_stage.filtered(), shape.planes, 1024);
+    expect_alike(undoubted, twin::guided_filter(cost, guide, noise.t), 0.01f);
+
+    filter_stage.doubt(guide_stage.nearer(), noise_stage);
+    const Volume filtered = read_shorts(filter_stage.filtered(), shape.planes, 1024);
+    expect_alike(filtered, twin::doubt_nearer(undoubted, read(guide_stage.nearer(), 1), noise.t), 1e-3f);
 
     expect_mostly(read(matching.u(), 1), twin::decide(twin::match(filtered, guide, noise.t), noise.t), 0.05f);
     expect_alike(read(matching.confidence(), 1), twin::mean_over_planes(filtered), 4e-3f);

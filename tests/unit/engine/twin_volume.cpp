@@ -89,6 +89,20 @@ float distance(const Colours &a, int ax, int ay, const Colours &b, int bx, int b
     return sum;
 }
 
+/* What a cell's own band says of plane z: C1 or C2. */
+float coarse_cost(const Volume &coarse, const Volume &top, const Volume &range, float median_range, int x,
+                  int y, unsigned z)
+{
+    return (top.at(x, y) - coarse.at(x, y, z)) / (range.at(x, y) + 4.0f * (median_range + 0.5f));
+}
+
+/* (1 - k0)^2 */
+float silence(float fine_range, float median_fine_range)
+{
+    const float silent = 1.0f - fine_range / (fine_range + 0.5f * (median_fine_range + 2.0f));
+    return silent * silent;
+}
+
 } // namespace
 
 Volume mean_of_colours(const TestStack &stack)
@@ -195,10 +209,36 @@ Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, f
 {
     const Volume fine_range = range_of(fine), range = range_of(coarse), top = top_of(coarse);
     return like(fine, [&](int x, int y, unsigned z) {
-        const float known = fine_range.at(x, y) / (fine_range.at(x, y) + 0.5f * (median_fine_range + 2.0f));
-        const float own =
-            (top.at(x, y) - coarse.at(x, y, z)) / (range.at(x, y) + 4.0f * (median_range + 0.5f));
-        return fine_cost.at(x, y, z) + (2.0f - t) * (1.0f - known) * (1.0f - known) * own;
+        return fine_cost.at(x, y, z) + (1.4f - 0.4f * t) * silence(fine_range.at(x, y), median_fine_range) *
+                                           coarse_cost(coarse, top, range, median_range, x, y, z);
+    });
+}
+
+Volume widen(const Volume &coarse, int spacing)
+{
+    return like(coarse, [&](int x, int y, unsigned z) {
+        float sum = 0.0f;
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++)
+                sum += at(coarse, x + i * spacing, y + j * spacing, z);
+        return sum / 9.0f;
+    });
+}
+
+Volume first_guess(const Volume &cost, const Volume &fine, const Volume &wide, float median_fine_range,
+                   float median_range)
+{
+    const Volume fine_range = range_of(fine), range = range_of(wide), top = top_of(wide);
+    return make(cost.width, cost.height, 1, [&](int x, int y, unsigned) {
+        const float share = 4.0f * silence(fine_range.at(x, y), median_fine_range);
+        const auto value = [&](unsigned z) {
+            return cost.at(x, y, z) + share * coarse_cost(wide, top, range, median_range, x, y, z);
+        };
+        unsigned best = 0;
+        for (unsigned z = 1; z < cost.planes; z++)
+            if (value(z) < value(best))
+                best = z;
+        return static_cast<float>(best);
     });
 }
 
@@ -210,18 +250,6 @@ Volume nearest_3x3(const Volume &u)
             for (int i = -1; i <= 1; i++)
                 least = std::min(least, at(u, x + i, y + j));
         return least;
-    });
-}
-
-Volume first_guess(const Volume &fine_cost)
-{
-    const Volume boxed = box(fine_cost, 2);
-    return make(boxed.width, boxed.height, 1, [&](int x, int y, unsigned) {
-        unsigned best = 0;
-        for (unsigned z = 1; z < boxed.planes; z++)
-            if (boxed.at(x, y, z) < boxed.at(x, y, best))
-                best = z;
-        return static_cast<float>(best);
     });
 }
 

@@ -22,17 +22,20 @@ Volume fine_cost(const Volume &focus, float median_top);
 Volume coarse_focus(const Colours &small);
 Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, float median_fine_range,
             float median_range, float t);
+Volume widen(const Volume &coarse, int spacing);
+Volume first_guess(const Volume &cost, const Volume &fine, const Volume &wide, float median_fine_range,
+                   float median_range);
 
 float median(std::vector<float> values);
 Volume range_of(const Volume &focus);
 Volume top_of(const Volume &focus);
 
-Volume first_guess(const Volume &fine_cost);
 Volume median_5x5(const Volume &u);
 Volume nearest_3x3(const Volume &u);
 Colours blend(const Colours &small, const Volume &u, float t);
 Colours denoise(const Colours &guide, float sigma, unsigned scale);
 Volume guided_filter(const Volume &cost, const Colours &guide, float t);
+Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t);
 Volume match(const Volume &cost, const Colours &guide, float t);
 Volume decide(const Volume &total, float t);
 Volume mean_over_planes(const Volume &cost);

@@ -182,6 +182,22 @@ Volume guided_filter(const Volume &cost, const Colours &guide, float t)
     return result;
 }
 
+Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t)
+{
+    Volume result = filtered;
+    for (unsigned y = 0; y < filtered.height; y++)
+        for (unsigned x = 0; x < filtered.width; x++) {
+            unsigned best = 0;
+            for (unsigned z = 1; z < filtered.planes; z++)
+                if (filtered.at(x, y, z) < filtered.at(x, y, best))
+                    best = z;
+            const float doubt = std::clamp(nearer.at(x, y) - static_cast<float>(best) - 1.0f, 0.0f, 1.0f);
+            for (unsigned z = 0; z < filtered.planes; z++)
+                result.at(x, y, z) *= 1.0f - (1.0f - t) * doubt;
+        }
+    return result;
+}
+
 Volume match(const Volume &cost, const Colours &guide, float t)
 {
     Volume total(cost.width, cost.height, cost.planes);
