@@ -256,9 +256,9 @@ Volume nearest_3x3(const Volume &u)
 Volume median_5x5(const Volume &u)
 {
     return like(u, [&](int x, int y, unsigned) {
-        std::vector<float> around;
+        std::vector<float> around(25);
         for (int k = 0; k < 25; k++)
-            around.push_back(at(u, x + k % 5 - 2, y + k / 5 - 2));
+            around[k] = at(u, x + k % 5 - 2, y + k / 5 - 2);
         return median(around);
     });
 }
