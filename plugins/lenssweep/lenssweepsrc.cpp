@@ -214,6 +214,22 @@ static gboolean set_caps(GstBaseSrc *source, GstCaps *caps)
     return TRUE;
 }
 
+/* GstBaseSrc does not say what did not fit. */
+static gboolean negotiate(GstBaseSrc *source)
+{
+    if (GST_BASE_SRC_CLASS(gst_lens_sweep_src_parent_class)->negotiate(source))
+        return TRUE;
+    g_autoptr(GstCaps) possible = gst_pad_query_caps(GST_BASE_SRC_PAD(source), nullptr);
+    g_autoptr(GstCaps) common = gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(source));
+    if (common && gst_caps_is_empty(common) && !gst_caps_is_empty(possible))
+        GST_ELEMENT_ERROR(source, STREAM, FORMAT,
+                          ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
+                           "a frame rate of "
+                           "planes times rate; put a videoconvert behind this element for other formats."),
+                          ("possible caps are %" GST_PTR_FORMAT, possible));
+    return FALSE;
+}
+
 static gboolean query(GstBaseSrc *source, GstQuery *query)
 {
     auto *self = GST_LENS_SWEEP_SRC(source);
@@ -303,6 +319,7 @@ static void gst_lens_sweep_src_class_init(GstLensSweepSrcClass *klass)
     source_class->unlock_stop = unlock_stop;
     source_class->get_caps = get_caps;
     source_class->fixate = fixate;
+    source_class->negotiate = negotiate;
     source_class->set_caps = set_caps;
     source_class->query = query;
     GST_PUSH_SRC_CLASS(klass)->create = gst_lens_sweep_src_create;

@@ -247,6 +247,14 @@ TEST(LensSweepSrc, trigger_timeout_is_an_error_that_says_what_to_look_at)
     EXPECT_EQ(error.find("sequencer"), std::string::npos) << "a camera that runs freely has none: " << error;
 }
 
+TEST(LensSweepSrc, pictures_that_nobody_takes_are_an_error_that_says_so)
+{
+    for (const char *filter : {"width=9999", "framerate=7/1"}) {
+        const std::string error = Pipeline(camera + "! video/x-raw," + filter + " ! fakesink").run();
+        EXPECT_NE(error.find("planes times rate"), std::string::npos) << filter << ": " << error;
+    }
+}
+
 TEST(LensSweepSrc, errors_say_what_to_do)
 {
     const auto error = [](const std::string &properties) {
