@@ -34,6 +34,7 @@
 #include "focalstack/stack_caps.h"
 
 #include <cstdio>
+#include <mutex>
 
 GST_DEBUG_CATEGORY(focalstackmux_debug);
 #define GST_CAT_DEFAULT focalstackmux_debug
@@ -44,6 +45,7 @@ struct FocalStackMuxState {
     FocalStackMuxState(GstElement *element, GstPad *source) : core(element, source) {}
 
     dff::MuxCore core;
+    std::mutex seek;           /* held during a seek, before all others */
     dff::MuxSettings settings; /* guarded by the object's lock */
 };
 
@@ -109,9 +111,9 @@ gboolean begin_stream(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *ev
     return TRUE;
 }
 
-gboolean end_stream(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
+gboolean pass_if(GstFocalStackMux *self, bool wanted, GstEvent *event)
 {
-    if (self->state->core.end(input))
+    if (wanted)
         return gst_pad_push_event(self->source, event);
     gst_event_unref(event);
     return TRUE;
@@ -132,16 +134,37 @@ gboolean sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
     case GST_EVENT_GAP:
         return self->state->core.pass_gap(input, event);
     case GST_EVENT_EOS:
-        return end_stream(self, input, event);
+        return pass_if(self, self->state->core.end(input), event);
     case GST_EVENT_FLUSH_START:
-        self->state->core.begin_flush();
-        return gst_pad_push_event(self->source, event);
+        return pass_if(self, self->state->core.begin_flush(input), event);
     case GST_EVENT_FLUSH_STOP:
-        self->state->core.end_flush(input);
-        return gst_pad_push_event(self->source, event);
+        return pass_if(self, self->state->core.end_flush(input), event);
     default:
         return gst_pad_event_default(pad, parent, event);
     }
+}
+
+/* Each input's source flushes in turn, downstream sees one flush. */
+gboolean source_event(GstPad *pad, GstObject *parent, GstEvent *event)
+{
+    FocalStackMuxState &state = *GST_FOCAL_STACK_MUX(parent)->state;
+    GstSeekFlags flags = GST_SEEK_FLAG_NONE;
+    if (GST_EVENT_TYPE(event) == GST_EVENT_SEEK)
+        gst_event_parse_seek(event, nullptr, nullptr, &flags, nullptr, nullptr, nullptr, nullptr);
+    if (!(flags & GST_SEEK_FLAG_FLUSH) || !state.core.has_planes_apart())
+        return gst_pad_event_default(pad, parent, event);
+
+    const std::lock_guard lock(state.seek);
+    const guint32 seqnum = gst_event_get_seqnum(event);
+    state.core.begin_seek();
+    const gboolean sought = gst_pad_event_default(pad, parent, event);
+    if (state.core.end_seek()) {
+        GstEvent *stop = gst_event_new_flush_stop(TRUE);
+        gst_event_set_seqnum(stop, seqnum);
+        gst_pad_push_event(pad, stop);
+    }
+    state.core.go_on();
+    return sought;
 }
 
 gboolean sink_query(GstPad *pad, GstObject *parent, GstQuery *query)
@@ -249,7 +272,7 @@ GstStateChangeReturn change_state(GstElement *element, GstStateChange transition
             return GST_STATE_CHANGE_FAILURE;
     }
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
-        core.begin_flush();
+        core.unblock();
     const GstStateChangeReturn changed =
         GST_ELEMENT_CLASS(gst_focal_stack_mux_parent_class)->change_state(element, transition);
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
@@ -337,6 +360,7 @@ static void gst_focal_stack_mux_init(GstFocalStackMux *self)
 {
     self->source = gst_pad_new_from_static_template(&source_template, "src");
     self->state = new FocalStackMuxState(GST_ELEMENT(self), self->source);
+    gst_pad_set_event_function(self->source, source_event);
     gst_pad_set_query_function(self->source, source_query);
     gst_element_add_pad(GST_ELEMENT(self), self->source);
 

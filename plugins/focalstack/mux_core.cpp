@@ -92,19 +92,62 @@ void MuxCore::stop()
     maker_.reset();
 }
 
-void MuxCore::end_flush(MuxInput &input)
+bool MuxCore::begin_flush(MuxInput &input)
+{
+    const std::lock_guard facts(facts_);
+    if (!seeking_ || !input.plane) {
+        gate_.shut();
+        return true;
+    }
+    gate_.shut(*input.plane);
+    if (std::exchange(flushed_, true))
+        return false;
+    origin_ns_.reset(); /* before any input numbers its first new frame */
+    return true;
+}
+
+bool MuxCore::end_flush(MuxInput &input)
 {
     const std::lock_guard lock(stream_);
-    maker_.reset();
-    output_.restart();
-    gate_.let_in();
-    if (input.plane)
-        gate_.open(*input.plane);
     inputs_.reopen(input);
     input.numbering = {};
     gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
+    if (input.plane)
+        gate_.open(*input.plane);
     const std::lock_guard facts(facts_);
+    if (seeking_ && input.plane)
+        return false;
+    start_anew();
+    gate_.let_in();
     origin_ns_.reset();
+    return true;
+}
+
+void MuxCore::begin_seek()
+{
+    const std::lock_guard facts(facts_);
+    seeking_ = true;
+    flushed_ = false;
+    gate_.hold();
+}
+
+bool MuxCore::end_seek()
+{
+    {
+        const std::lock_guard facts(facts_);
+        seeking_ = false;
+        if (!flushed_) /* who pushes may be blocked downstream */
+            return false;
+    }
+    const std::lock_guard lock(stream_);
+    start_anew();
+    return true;
+}
+
+void MuxCore::start_anew()
+{
+    maker_.reset();
+    output_.restart();
 }
 
 void MuxCore::begin(MuxInput &input)
@@ -214,16 +257,9 @@ bool MuxCore::place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame)
 /* A live source cannot be made to wait: there a sweep waits for later frames only. */
 bool MuxCore::wait_for_others(MuxInput &input, uint64_t sweep)
 {
-    if (!input.live) {
-        gboolean live = FALSE;
-        GstQuery *query = gst_query_new_latency();
-        if (gst_pad_peer_query(input.pad, query))
-            gst_query_parse_latency(query, &live, nullptr, nullptr);
-        gst_query_unref(query);
-        input.live = live;
-    }
+    const bool live = input.is_live();
     gate_.arrive(*input.plane, sweep);
-    return *input.live || gate_.wait(*input.plane);
+    return live || gate_.wait(*input.plane);
 }
 
 GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)

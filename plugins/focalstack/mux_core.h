@@ -46,9 +46,20 @@ public:
     /* True if this was the last input's end, so that the whole stream ends. */
     bool end(MuxInput &input);
 
-    /* Around a flush. */
-    void begin_flush() { gate_.shut(); }
-    void end_flush(MuxInput &input);
+    /* Wakes who waits for others; nobody waits until start(). */
+    void unblock() { gate_.shut(); }
+
+    /* Around a flush. True if it is to go downstream: of the flushes of a seek only the first one begins, and
+     * end_seek() ends them. */
+    bool begin_flush(MuxInput &input);
+    bool end_flush(MuxInput &input);
+
+    /* Around a flushing seek of all inputs that bring a plane each, which are flushed one after the other:
+     * those that are done wait for the rest. end_seek() returns whether any was flushed. */
+    bool has_planes_apart() const { return inputs_.linked_planes() != 0; }
+    void begin_seek();
+    bool end_seek();
+    void go_on() { gate_.release(); }
 
 private:
     bool place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame);
@@ -63,6 +74,7 @@ private:
     GstFlowReturn finish();
     void update_latency(const GstFocalStackInfo &shape);
     void publish();
+    void start_anew();
 
     GstElement *element_;
 
@@ -81,6 +93,8 @@ private:
     mutable std::mutex facts_;
     MuxStatistics published_;
     GstClockTime latency_ = 0;
+    bool seeking_ = false;
+    bool flushed_ = false;              /* by the seek */
     std::optional<uint64_t> origin_ns_; /* running time of the first frame on a pad of its own */
 };
 

@@ -22,6 +22,18 @@ void MuxInput::reset()
     ended = false;
 }
 
+bool MuxInput::is_live()
+{
+    if (!live) {
+        gboolean said = FALSE;
+        g_autoptr(GstQuery) query = gst_query_new_latency();
+        if (gst_pad_peer_query(pad, query))
+            gst_query_parse_latency(query, &said, nullptr, nullptr);
+        live = said;
+    }
+    return *live;
+}
+
 MuxInput &MuxInputs::add(GstPad *pad, std::optional<unsigned> plane)
 {
     const std::lock_guard lock(mutex_);

@@ -18,6 +18,9 @@ struct MuxInput {
     MuxInput(GstPad *sink_pad, std::optional<unsigned> of_plane) : pad(sink_pad), plane(of_plane) { reset(); }
     void reset();
 
+    /* Asked for once. */
+    bool is_live();
+
     GstPad *pad;
     std::optional<unsigned> plane; /* empty: frames of all planes come here */
     bool has_caps;

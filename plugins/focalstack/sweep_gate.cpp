@@ -9,7 +9,7 @@ namespace dff {
 void SweepGate::open(unsigned plane)
 {
     const std::lock_guard lock(mutex_);
-    inputs_.at(plane) = {true, std::nullopt};
+    inputs_.at(plane) = {true, false, std::nullopt};
 }
 
 void SweepGate::close(unsigned plane)
@@ -37,8 +37,10 @@ bool SweepGate::wait(unsigned plane)
 {
     std::unique_lock lock(mutex_);
     const Input &own = inputs_.at(plane);
-    moved_.wait(lock, [&] { return shut_ || !own.open || all_are_near(own.sweep.value_or(0)); });
-    return !shut_ && own.open;
+    moved_.wait(lock, [&] {
+        return shut_ || own.shut || !own.open || (!held_ && all_are_near(own.sweep.value_or(0)));
+    });
+    return !shut_ && !own.shut && own.open;
 }
 
 bool SweepGate::all_are_near(uint64_t sweep) const
@@ -55,10 +57,30 @@ void SweepGate::shut()
     moved_.notify_all();
 }
 
+void SweepGate::shut(unsigned plane)
+{
+    const std::lock_guard lock(mutex_);
+    inputs_.at(plane).shut = true;
+    moved_.notify_all();
+}
+
 void SweepGate::let_in()
 {
     const std::lock_guard lock(mutex_);
     shut_ = false;
+}
+
+void SweepGate::hold()
+{
+    const std::lock_guard lock(mutex_);
+    held_ = true;
+}
+
+void SweepGate::release()
+{
+    const std::lock_guard lock(mutex_);
+    held_ = false;
+    moved_.notify_all();
 }
 
 } // namespace dff

@@ -30,15 +30,21 @@ public:
      * shut or the plane closed. */
     bool wait(unsigned plane);
 
-    /* Wakes who waits, and lets nobody wait until let_in(). */
+    /* Wakes who waits, and lets nobody wait until let_in(); or one plane, until it is opened again. */
     void shut();
+    void shut(unsigned plane);
     void let_in();
+
+    /* Lets nobody through until release(). */
+    void hold();
+    void release();
 
 private:
     bool all_are_near(uint64_t sweep) const;
 
     struct Input {
         bool open = false;
+        bool shut = false;
         std::optional<uint64_t> sweep;
     };
 
@@ -46,6 +52,7 @@ private:
     std::condition_variable moved_;
     std::array<Input, longest_stack> inputs_;
     bool shut_ = false;
+    bool held_ = false;
 };
 
 } // namespace dff

@@ -166,6 +166,26 @@ TEST(Pipelines, one_source_a_plane)
     EXPECT_EQ(pipeline.wait_for_end(), "");
 }
 
+TEST(Pipelines, one_source_a_plane_goes_on_after_every_seek)
+{
+    std::string description = "focalstackmux name=m ! appsink name=out sync=false max-buffers=2 ";
+    for (const char *pad : {"sink_0", "sink_1", "sink_2"})
+        description +=
+            "videotestsrc ! video/x-raw,format=GRAY8,width=16,height=16 ! m." + std::string(pad) + " ";
+    Pipeline pipeline(description);
+    for (unsigned i = 0; i < 20; i++) {
+        const GstClockTime time = (i * 7 % 20) * GST_SECOND;
+        const OwnedSample before(i % 4 != 0 ? pipeline.pull() : nullptr);
+        ASSERT_TRUE(gst_element_seek_simple(pipeline.bin(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                            static_cast<gint64>(time)));
+        for (unsigned k = 0; k < 3; k++) {
+            const OwnedSample stack(pipeline.pull());
+            ASSERT_TRUE(stack) << "seek " << i;
+            EXPECT_NEAR(GST_BUFFER_PTS(gst_sample_get_buffer(stack.get())), k * 1e9 / 30, 2) << "seek " << i;
+        }
+    }
+}
+
 TEST(Pipelines, a_live_source_that_falls_silent_stops_nobody)
 {
     Pipeline pipeline("videotestsrc is-live=true num-buffers=30 ! m.sink_0 "
