@@ -137,6 +137,7 @@ protected:
     void expect_cost_volume();
     void expect_guide_image();
     void expect_guided_filter_and_matching();
+    void expect_doubt();
     void expect_fill_and_upsampling();
     void expect_confidence_and_sparse_depth();
 
@@ -175,6 +176,7 @@ TEST_P(VolumeStages, decision_agrees_with_its_twins)
     expect_guided_filter_and_matching();
     expect_fill_and_upsampling();
     expect_confidence_and_sparse_depth();
+    expect_doubt();
 }
 
 void VolumeStages::expect_noise_as_made()
@@ -258,6 +260,26 @@ void VolumeStages::expect_guided_filter_and_matching()
 
     expect_mostly(read(matching.u(), 1), twin::decide(twin::match(filtered, guide, noise.t), noise.t), 0.05f);
     expect_alike(read(matching.confidence(), 1), twin::mean_over_planes(filtered), 4e-3f);
+}
+
+/* Of surroundings from the nearest plane to behind the farthest, so that every cell may be doubted. */
+void VolumeStages::expect_doubt()
+{
+    filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
+    const Volume undoubted = read_shorts(filter_stage.filtered(), shape.planes, 1024);
+    const float farthest = static_cast<float>(shape.planes + 1);
+    std::vector<float> cells(size_t{1} * low.height * low.stride);
+    for (size_t i = 0; i < cells.size(); i++)
+        cells[i] = farthest * static_cast<float>(i % 16) / 15.0f;
+    const cl::Buffer surroundings = low.allocate(queue, 1);
+    queue.commands().enqueueWriteBuffer(surroundings, CL_TRUE, 0, cells.size() * sizeof(float), cells.data());
+
+    filter_stage.doubt(surroundings, noise_stage);
+    const Volume doubted = read_shorts(filter_stage.filtered(), shape.planes, 1024);
+    expect_alike(doubted, twin::doubt_nearer(undoubted, read(surroundings, 1), noise.t), 1e-3f);
+    if (GetParam().silent) {
+        EXPECT_NE(doubted.values, undoubted.values);
+    }
 }
 
 void VolumeStages::expect_fill_and_upsampling()
