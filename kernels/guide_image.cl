@@ -60,11 +60,11 @@ __kernel void median_5x5(__global const short *u, __global float *median, int wi
     mirror_ends(out, width);
 }
 
-/* nearer = min_3x3(u), guide[colour] = A before the bilateral filter, which reads it from `noisy`. All sides are mirrored,
- * before and after. Work-items (1, low height). */
+/* nearer = min_3x3(u), guide[colour] = A; where the bilateral filter follows and there is noise, it goes to `noisy`, from
+ * which that reads it. All sides are mirrored, before and after. Work-items (1, low height). */
 __kernel void blend_planes(__global const short *small, __global const float *u, __global const Noise *noise,
-                           __global float *nearer, __global float *guide, __global short *noisy, int width, int stride,
-                           int planes)
+                           __global float *nearer, __global float *guide, __global short *noisy, int is_filtered,
+                           int width, int stride, int planes)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t row = (size_t)y * stride + SIDE, picture = (size_t)height * stride;
@@ -72,7 +72,8 @@ __kernel void blend_planes(__global const short *small, __global const float *u,
     __global const float *above = u + (size_t)reflect(y - 1, height) * stride + SIDE, *here = u + row,
                          *below = u + (size_t)reflect(y + 1, height) * stride + SIDE;
     __global float *out = guide + row;
-    __global short *copy = noisy + row;
+    __global short *noisy_out = noisy + row;
+    const int is_noisy = is_filtered && noise->sigma > DENOISED;
     for (int x = 0; x < width; x += 16) {
         float16 position = INFINITY;
         UNROLL
@@ -96,16 +97,18 @@ __kernel void blend_planes(__global const short *small, __global const float *u,
         const float16 unit = 1.0f / (COLOUR_ONE * weights);
         const float16 colours[3] = {red * unit, green * unit, blue * unit};
         UNROLL
-        for (int colour = 0; colour < 3; colour++) {
-            WIDE(out + colour * picture + x) = colours[colour];
-            SHORTS(copy + colour * picture + x) = to_wide_shorts(NOISY_ONE * colours[colour]);
-        }
+        for (int colour = 0; colour < 3; colour++)
+            if (is_noisy)
+                SHORTS(noisy_out + colour * picture + x) = to_wide_shorts(NOISY_ONE * colours[colour]);
+            else
+                WIDE(out + colour * picture + x) = colours[colour];
     }
     mirror_ends(nearer + row, width);
-    for (int colour = 0; colour < 3; colour++) {
-        mirror_ends(out + colour * picture, width);
-        mirror_short_ends(copy + colour * picture, width);
-    }
+    for (int colour = 0; colour < 3; colour++)
+        if (is_noisy)
+            mirror_short_ends(noisy_out + colour * picture, width);
+        else
+            mirror_ends(out + colour * picture, width);
 }
 
 #define RADIUS 4

@@ -18,20 +18,21 @@ void GuideImage::run(const CostVolume &cost, const SmallPlanes &small, const Noi
 {
     queue_.begin_stage("guide");
     queue_.run(median_5x5_, low_.rows(), cost.first_guess(), median_, low_.width, low_.stride);
-    blend(median_, small, noise);
+    blend(median_, small, noise, true);
     queue_.run(denoise_, low_.rows(), noisy_, noise.noise(), guide_, low_.width, low_.stride, low_.scale);
 }
 
 void GuideImage::run_at(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise)
 {
     queue_.begin_stage("guide-again");
-    blend(u, small, noise);
+    blend(u, small, noise, false);
 }
 
-void GuideImage::blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise)
+void GuideImage::blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise,
+                       bool is_filtered)
 {
     queue_.run(blend_planes_, low_.rows(), small.colours(), u, noise.noise(), nearer_, guide_, noisy_,
-               low_.width, low_.stride, low_.planes);
+               cl_int{is_filtered}, low_.width, low_.stride, low_.planes);
 }
 
 } // namespace dff

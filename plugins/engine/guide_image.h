@@ -22,7 +22,7 @@ public:
     const cl::Buffer &nearer() const { return nearer_; } /* the least u around each cell */
 
 private:
-    void blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise);
+    void blend(const cl::Buffer &u, const SmallPlanes &small, const NoiseEstimate &noise, bool is_filtered);
 
     CommandQueue &queue_;
     LowShape low_;
