@@ -152,7 +152,7 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
         const dff::MappedStack mapped(state.depth.stack(), stack, state.depth.device());
         if (const auto settings = changed_settings(state))
             state.depth.set_settings(*settings);
-        const bool is_first = !state.depth.has_engine();
+        const bool is_first = state.depth.is_at_start();
         std::optional<dff::StartProgress> progress;
         if (is_first)
             progress.emplace(GST_ELEMENT(self));

@@ -30,8 +30,8 @@ public:
     void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
     const GstFocalStackInfo &stack() const { return stack_; }
 
-    /* False until the first stack after start or another setting or format. */
-    bool has_engine() const { return engine_ != nullptr; }
+    /* Whether the next stack to be computed is the first one of its engine. */
+    bool is_at_start() const { return times().empty(); }
 
     /* Makes the engine ready for `stack`, the `index`-th of its stream, and returns the facts of its depth
      * map. Throws EngineError, or std::invalid_argument with a user's text if the unit cannot be had for this

@@ -25,7 +25,7 @@ StartProgress::~StartProgress()
     thread_.request_stop();
     thread_.join();
     if (has_told_)
-        tell(element_, GST_PROGRESS_TYPE_COMPLETE, "The first stack is computed");
+        tell(element_, GST_PROGRESS_TYPE_COMPLETE, "The wait for the first stack is over");
 }
 
 void StartProgress::wait(const std::stop_token &stop)

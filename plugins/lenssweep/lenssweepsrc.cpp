@@ -222,11 +222,11 @@ static gboolean negotiate(GstBaseSrc *source)
     g_autoptr(GstCaps) possible = gst_pad_query_caps(GST_BASE_SRC_PAD(source), nullptr);
     g_autoptr(GstCaps) common = gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(source));
     if (common && gst_caps_is_empty(common) && !gst_caps_is_empty(possible))
-        GST_ELEMENT_ERROR(source, STREAM, FORMAT,
-                          ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
-                           "a frame rate of "
-                           "planes times rate; put a videoconvert behind this element for other formats."),
-                          ("possible caps are %" GST_PTR_FORMAT, possible));
+        GST_ELEMENT_ERROR(
+            source, STREAM, FORMAT,
+            ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
+             "a frame rate of planes times rate; put a videoconvert behind this element for other formats."),
+            ("possible caps are %" GST_PTR_FORMAT, possible));
     return FALSE;
 }
 
