@@ -1,108 +1,38 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""Sweeps the focus over scenes whose depth is known, runs the built elements, and scores what comes out.
+"""Runs the built elements on scenes and scores what comes out: depth and picture where the truth is known, otherwise the picture
+beside the planes it was made from.
 
-A scene is a folder with view.png, a sharp colour image, and disp.png, its disparity: 8 bits, 0 is unknown, larger is nearer;
-or it is made: scene=shapes of lenssweeptestsrc by a seed, whose depth the source tells itself.
+scenes.py says what a folder of scenes may hold. --shapes, --slant and --halo make scenes instead.
 """
 import argparse
 import collections
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
-import cv2
 import numpy as np
 
+import elements
+import scenes
 import scores
 
-PLANES = 10
 NOISE = ('none', 'moderate', 'strong')
-SECONDS_EACH = 300
-COLUMNS = (('psnr', 'PSNR dB', '.2f'), ('mae', 'MAE', '.2f'), ('off_by_plane', 'off %', '.2f'),
-           ('aif_psnr', 'AIF dB', '.2f'), ('aif_ssim', 'AIF SSIM', '.4f'))
+COLUMNS = (('psnr', 'PSNR dB', '.2f'), ('mae', 'MAE', '.2f'), ('off_by_plane', 'off %', '.2f'), ('abs_rel', 'AbsRel %', '.2f'),
+           ('delta_105', '<1.05 %', '.2f'), ('aif_psnr', 'AIF dB', '.2f'), ('aif_ssim', 'AIF SSIM', '.4f'), ('slope', 'slope', '.2f'),
+           ('rms', 'RMS', '.3f'), ('shapes_off', 'shapes %', '.2f'), ('below_best', 'loss dB', '.2f'), ('halo', 'halo %', '.3f'),
+           ('invented', 'invented', '.2f'), ('tile', 'tile', '.3f'))
 
 # method: properties of dffdepth as in a pipeline; blend: of aifcompose, '' is its own choice; blur_step: pixels of blur a plane.
 Conditions = collections.namedtuple('Conditions', 'method noise breathing blur_step blend', defaults=[''])
 
 
-class FileScene:
-    """A folder with a picture and its disparity."""
-
-    def __init__(self, folder):
-        self.folder, self.name = folder, folder.name
-        self.view = cv2.imread(str(folder / 'view.png'))
-        self.size = self.view.shape[1::-1]
-        self.source = f'scene=files image="{folder}/view.png" depth-map="{folder}/disp.png" seed=1'
-
-    def truth(self, _):
-        return scores.true_depth(cv2.imread(str(self.folder / 'disp.png'), cv2.IMREAD_UNCHANGED), PLANES)
-
-
-class MadeScene:
-    """Shapes before a wall; no picture of it is sharp everywhere, so that only depth is scored."""
-
-    def __init__(self, seed, size):
-        self.name, self.size, self.view = f'shapes {seed}', size, None
-        self.source = f'scene=shapes seed={seed}'
-
-    def truth(self, folder):
-        path = folder / 'truth'
-        run(f'''lenssweeptestsrc name=t num-buffers={PLANES} planes={PLANES} {self.source}
-            t.src ! {caps(self.size)} ! queue ! fakesink  t.depth ! queue ! filesink location={path}''')
-        pixels = read_rows(path, self.size[::-1], np.dtype('<u2'), 1)[..., 0]
-        return to_planes(pixels), pixels > 0
-
-
-def caps(size):
-    return f'video/x-raw,format=BGR,width={size[0]},height={size[1]}'
-
-
-def to_planes(pixels):
-    return np.maximum(pixels.astype(np.float64) - 1, 0) / 65534 * (PLANES - 1)
-
-
-def run(pipeline):
-    finished = subprocess.run(['gst-launch-1.0', '-q', *pipeline.split()], timeout=SECONDS_EACH, text=True,
-                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    if finished.returncode != 0:
-        raise RuntimeError(f'the pipeline failed: {pipeline}\n{finished.stdout}')
-
-
-def run_elements(scene, conditions, folder):
-    """Plane positions and the all-in-focus image (BGR) that the pipeline makes of a scene."""
-    depth, aif = folder / 'depth', folder / 'aif'
-    align = 'focalstackalign !' if conditions.breathing else ''
-    blend = f'blend={conditions.blend}' if conditions.blend else ''
-    run(f'''lenssweeptestsrc num-buffers={PLANES} planes={PLANES} {scene.source} blur-step={conditions.blur_step}
-        noise={conditions.noise} breathing={conditions.breathing} ! {caps(scene.size)} ! focalstackmux ! {align} tee name=s
-        s. ! queue ! dffdepth {conditions.method} unit=index ! tee name=d  d. ! queue ! filesink location={depth}
-        d. ! queue ! c.depth  s. ! queue ! c.stack
-        aifcompose name=c {blend} ! videoconvert ! video/x-raw,format=BGR ! filesink location={aif}''')
-    shape = scene.size[::-1]
-    return to_planes(read_rows(depth, shape, np.dtype('<u2'), 1)[..., 0]), read_rows(aif, shape, np.dtype('u1'), 3)
-
-
-def read_rows(path, shape, dtype, channels):
-    """One raw video frame in GStreamer's default layout: each row is padded to a multiple of 4 bytes."""
-    height, width = shape
-    row = width * channels * dtype.itemsize
-    rows = np.fromfile(path, np.uint8).reshape(height, (row + 3) // 4 * 4)
-    return np.ascontiguousarray(rows[:, :row]).view(dtype).reshape(height, width, channels)
-
-
 def score_scene(scene, conditions):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        u, image = run_elements(scene, conditions, folder)
-        truth, known = scene.truth(folder)
-    result = scores.depth_scores(u, truth, known, PLANES)
-    if scene.view is not None:
-        result.update(scores.all_in_focus_scores(image, scene.view))
-    return result
+        return scene.score(elements.compute(scene, conditions, folder), folder)
 
 
 def show_progress(done, total, what):
@@ -122,21 +52,25 @@ def averages(rows):
 
 def print_table(conditions, rows):
     breathing = f', {conditions.breathing:.1%} of breathing undone' if conditions.breathing else ''
-    print(f'\n{conditions.method or "the method dffdepth chooses"}, noise={conditions.noise}, {PLANES} planes{breathing}')
-    print(f'{"":24}' + ''.join(f'{title:>10}' for _, title, _ in COLUMNS))
+    blend = f', blend={conditions.blend}' if conditions.blend else ''
+    print(f'\n{conditions.method or "the method dffdepth chooses"}{blend}, noise={conditions.noise}, '
+          f'{conditions.blur_step:g} px of blur a plane{breathing}')
+    columns = [column for column in COLUMNS if any(column[0] in row for row in rows.values())]
+    print(f'{"":24}' + ''.join(f'{title:>10}' for _, title, _ in columns))
     for name, row in rows.items():
-        cells = ''.join(f'{row[key]:10{form}}' if key in row else ' ' * 10 for key, _, form in COLUMNS)
-        print(f'{name:24}{cells}')
+        cells = ''.join(f'{row[key]:10{form}}' if key in row else ' ' * 10 for key, _, form in columns)
+        print(f'{name:24}{cells}', flush=True)
 
 
-def scenes_in(folder, wanted):
-    scenes = [scene for scene in sorted(folder.iterdir())
-              if (scene / 'view.png').is_file() and (scene / 'disp.png').is_file()]
-    missing = set(wanted or ()) - {scene.name for scene in scenes}
-    if missing or not scenes:
-        sys.exit(f'{folder} has no scene {", ".join(sorted(missing))}' if missing else
-                 f'{folder} holds no folder with a view.png and a disp.png')
-    return [FileScene(scene) for scene in scenes if not wanted or scene.name in wanted]
+def scenes_in(folder, wanted, farthest_first):
+    """Those named in `wanted`, or else all whose depth is known."""
+    found = {path.name: scenes.scene_in(path, farthest_first) for path in sorted(folder.iterdir())
+             if path.is_dir() and (not wanted or path.name in wanted)}
+    missing = [name for name in wanted or () if not found.get(name)]
+    if missing:
+        sys.exit(f'{folder} has no scene {", ".join(missing)}')
+    chosen = [scene for scene in found.values() if scene and (wanted or not isinstance(scene, scenes.RealScene))]
+    return chosen or sys.exit(f'{folder} holds no folder with a view.png and a disp.png')
 
 
 def size_of(text):
@@ -149,38 +83,58 @@ def parse_arguments():
     parser.add_argument('data', type=pathlib.Path, help='folder of scenes')
     parser.add_argument('--method', nargs='+', default=[], help="dffdepth's method (default: its own choice)")
     parser.add_argument('--properties', default='', help='more properties of dffdepth, as in a pipeline')
-    parser.add_argument('--blend', default='', help="aifcompose's blend (default: its own choice)")
-    parser.add_argument('--shapes', nargs='+', type=int, metavar='SEED', help='made scenes instead of those of the folder')
-    parser.add_argument('--size', type=size_of, default=(640, 480), help='of made scenes (default: 640x480)')
+    parser.add_argument('--blend', nargs='+', default=[''], help="aifcompose's blend (default: its own choice)")
+    parser.add_argument('--shapes', nargs='+', type=int, metavar='SEED', help='made scenes: shapes before a wall')
+    parser.add_argument('--slant', nargs='+', type=int, metavar='SEED', help='made scenes: how much depth sticks to the planes')
+    parser.add_argument('--halo', nargs='+', type=int, metavar='SEED', help='made scenes: bright shapes on blank ground')
+    parser.add_argument('--behind', type=int, default=0, metavar='PLANES',
+                        help='how far the ground lies behind the shapes of --halo (default: %(default)s)')
+    parser.add_argument('--size', type=size_of, default=(640, 480), help='of --shapes and --slant (default: 640x480)')
     parser.add_argument('--breathing', nargs='+', type=float, default=[0], metavar='PART',
                         help='magnification of the last plane minus that of the first, which focalstackalign undoes')
-    parser.add_argument('--scenes', nargs='+', help='names of the scenes to use (default: all)')
-    parser.add_argument('--noise', nargs='+', default=NOISE, choices=NOISE, help='default: all three')
-    parser.add_argument('--blur-step', type=float, default=2, help='pixels of blur a plane (default: %(default)s)')
+    parser.add_argument('--scenes', nargs='+', help='names of the scenes to use (default: all but photographs)')
+    parser.add_argument('--farthest-first', nargs='+', default=[], metavar='SCENE', help='photographs to be read backwards')
+    parser.add_argument('--noise', nargs='+', default=NOISE, choices=NOISE, help='of what is simulated (default: all three)')
+    parser.add_argument('--blur-step', nargs='+', type=float, default=[2],
+                        help='pixels of blur a plane of what is simulated (default: 2)')
     parser.add_argument('--json', type=pathlib.Path, help='where to write the scores as JSON')
     return parser.parse_args()
 
 
+def wanted_scenes(arguments):
+    made = [scenes.MadeScene(kind, seed, arguments.size) for kind in ('shapes', 'slant') for seed in getattr(arguments, kind) or ()]
+    made += [scenes.HaloScene(seed, arguments.behind) for seed in arguments.halo or ()]
+    return made or scenes_in(arguments.data.resolve(), arguments.scenes, arguments.farthest_first)
+
+
+def wanted_runs(arguments, chosen):
+    """Where nothing is simulated, noise and blur are as they are."""
+    steps, noises = arguments.blur_step, arguments.noise
+    if not any(isinstance(scene, (scenes.Simulated, scenes.HaloScene)) for scene in chosen):
+        steps = steps[:1]
+    if not any(isinstance(scene, scenes.Simulated) for scene in chosen):
+        noises = noises[:1]
+    methods = [f'method={name}' for name in arguments.method] or ['']
+    return [Conditions(f'{method} {arguments.properties}'.strip(), noise, breathing, step, blend)
+            for method in methods for blend in arguments.blend for step in steps for breathing in arguments.breathing
+            for noise in noises]
+
+
 def main():
     arguments = parse_arguments()
-    if arguments.shapes:
-        scenes = [MadeScene(seed, arguments.size) for seed in arguments.shapes]
-    else:
-        scenes = scenes_in(arguments.data.resolve(), arguments.scenes)
-    methods = [f'method={name}' for name in arguments.method] or ['']
-    runs = [Conditions(f'{method} {arguments.properties}'.strip(), noise, breathing, arguments.blur_step, arguments.blend)
-            for method in methods for breathing in arguments.breathing for noise in arguments.noise]
-    total, done, results = len(runs) * len(scenes), 0, []
+    chosen = wanted_scenes(arguments)
+    runs = wanted_runs(arguments, chosen)
+    total, done, results = len(runs) * len(chosen), 0, []
     for conditions in runs:
         rows = {}
-        for scene in scenes:
+        for scene in chosen:
             show_progress(done, total, f'{scene.name}, noise {conditions.noise}')
             rows[scene.name] = score_scene(scene, conditions)
             done += 1
         show_progress(done, total, f'noise {conditions.noise}: done')
         rows.update(averages(list(rows.values())))
         print_table(conditions, rows)
-        results.append({**conditions._asdict(), 'planes': PLANES, 'scores': rows})
+        results.append({**conditions._asdict(), 'scores': rows})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + '\n')
         print(f'\nwritten to {arguments.json}')

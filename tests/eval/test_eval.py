@@ -10,9 +10,11 @@ import cv2
 import numpy as np
 
 import evaluate
+import halo
+import scenes
 import scores
 
-PLANES = evaluate.PLANES
+PLANES = scenes.PLANES
 
 
 def make_scene(folder):
@@ -44,13 +46,29 @@ class Scoring(unittest.TestCase):
     def test_perfect_depth(self):
         found = self.depth(self.truth)
         self.assertGreater(found['psnr'], 100)
-        self.assertEqual((found['mae'], found['off_by_plane']), (0, 0))
+        self.assertEqual((found['mae'], found['off_by_plane'], found['abs_rel'], found['delta_105']), (0, 0, 0, 100))
 
     def test_half_a_plane_off_everywhere(self):
         found = self.depth(self.truth + 0.5)
         self.assertAlmostEqual(found['psnr'], 20 * np.log10(2 * (PLANES - 1)))
         self.assertAlmostEqual(found['mae'], 255 / 2 / (PLANES - 1))
         self.assertEqual(found['off_by_plane'], 0)
+
+    def test_parts_of_the_distance(self):
+        far = np.full((10, 10), PLANES - 1.0)
+        found = scores.depth_scores(far - 0.4, far, far > 0, PLANES)
+        metres = 1 / (scores.FAR + 0.4 * (scores.NEAR - scores.FAR) / (PLANES - 1))
+        self.assertAlmostEqual(found['abs_rel'], 100 * abs(metres * scores.FAR - 1))
+        self.assertEqual(found['delta_105'], 100)
+        self.assertEqual(scores.depth_scores(far - 0.5, far, far > 0, PLANES)['delta_105'], 0)
+
+    def test_stairs_have_no_slope_and_the_truth_has_one(self):
+        truth = np.repeat(np.linspace(0, PLANES - 1, 500)[None], 10, axis=0)
+        everywhere = np.full(truth.shape, True)
+        for share in (0, 0.4, 1):
+            found = scores.locking_scores(np.rint(truth) + share * (truth - np.rint(truth)), truth, everywhere, PLANES)
+            self.assertAlmostEqual(found['slope'], share)
+        self.assertAlmostEqual(found['rms'], 0)
 
     def test_two_planes_off_in_a_quarter(self):
         u = self.truth.copy()
@@ -72,25 +90,81 @@ class Scoring(unittest.TestCase):
         self.assertAlmostEqual(moved['aif_psnr'], 20 * np.log10(25.5))
 
 
+class PicturesOfPlanes(unittest.TestCase):
+    """Made of two planes whose halves are sharp in turn."""
+
+    def setUp(self):
+        texture = np.random.default_rng(3).integers(0, 256, (256, 256, 3)).astype(np.float32)
+        self.sharp, blurred = cv2.GaussianBlur(texture, (0, 0), 1), cv2.GaussianBlur(texture, (0, 0), 6)
+        left = np.arange(256)[None, :, None] < 128
+        self.planes = [np.where(left, self.sharp, blurred), np.where(left, blurred, self.sharp)]
+
+    def test_the_sharp_picture_has_all_and_invents_nothing(self):
+        found = scores.real_scores(self.sharp, self.planes)
+        self.assertEqual(found['invented'], 0)
+        self.assertAlmostEqual(found['tile'], 1, places=2)
+
+    def test_a_line_that_no_plane_has_is_invented(self):
+        drawn = self.sharp.copy()
+        drawn[:, 100] = 255 * (np.arange(256)[:, None] % 2 + 2)
+        self.assertGreater(scores.real_scores(drawn, self.planes)['invented'], 5)
+
+    def test_half_of_the_sharpness(self):
+        weak = 128 + (self.sharp - 128) / np.sqrt(2)
+        self.assertAlmostEqual(scores.real_scores(weak, self.planes)['tile'], 0.5, places=2)
+
+    def test_haloes(self):
+        planes, sharp, truth, shapes = halo.stack(0, 5, 6.0, 2, 4)
+        self.assertEqual((truth[shapes].max(), truth[~shapes].min()), (2, 4))
+        kept = scores.halo_scores(sharp, sharp, planes)
+        self.assertLess(kept['below_best'], 0)
+        self.assertEqual(kept['halo'], 0)
+        blurred = scores.halo_scores(planes[4], sharp, planes)
+        self.assertGreater(blurred['below_best'], 1)
+        self.assertGreater(blurred['halo'], 0.3)
+
+
 class Elements(unittest.TestCase):
     def test_elements_find_the_depth_of_a_textured_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder)
             make_scene(scene)
-            found = evaluate.score_scene(evaluate.FileScene(scene), evaluate.Conditions('', 'moderate', 0, 2))
+            found = evaluate.score_scene(scenes.FileScene(scene), evaluate.Conditions('', 'moderate', 0, 2))
         self.assertGreater(found['psnr'], 15)
         self.assertGreater(found['aif_psnr'], 25)
 
     def test_made_scenes_know_their_depth(self):
-        found = evaluate.score_scene(evaluate.MadeScene(5, (320, 240)), evaluate.Conditions('', 'none', 0, 2))
+        found = evaluate.score_scene(scenes.MadeScene('shapes', 5, (320, 240)), evaluate.Conditions('', 'none', 0, 2))
         self.assertGreater(found['psnr'], 15)
         self.assertNotIn('aif_psnr', found)
+
+    def test_a_folder_of_planes_or_of_photographs(self):
+        with tempfile.TemporaryDirectory() as name:
+            given, photographs = pathlib.Path(name) / 'given', pathlib.Path(name) / 'photographs'
+            given.mkdir()
+            photographs.mkdir()
+            planes, sharp, truth, _ = halo.stack(0, 3, 4.0, 0, 2)
+            for z, plane in enumerate(planes):
+                cv2.imwrite(str(given / f'plane_{z}.png'), plane.astype(np.uint8))
+                cv2.imwrite(str(photographs / f'{9 - z}.jpg'), plane.astype(np.uint8))
+            cv2.imwrite(str(given / 'sharp.png'), sharp.astype(np.uint8))
+            cv2.imwrite(str(given / 'truth.png'), (1 + truth * 65534 // 2).astype(np.uint16))
+            here = evaluate.Conditions('', 'none', 0, 2, 'sharp')
+            found = evaluate.score_scene(scenes.scene_in(given), here)
+            real = evaluate.score_scene(scenes.scene_in(photographs, ['photographs']), here)
+        self.assertGreater(found['aif_psnr'], 25)
+        self.assertGreater(real['tile'], 0.8)
+
+    def test_haloes_are_scored(self):
+        found = evaluate.score_scene(scenes.HaloScene(0, 0), evaluate.Conditions('', 'none', 0, 4))
+        self.assertIn('shapes_off', found)
+        self.assertLess(found['halo'], 100)
 
     def test_breathing_undone_leaves_depth_where_the_truth_is(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = pathlib.Path(folder)
             make_scene(scene)
-            still, undone = (evaluate.score_scene(evaluate.FileScene(scene), evaluate.Conditions('', 'none', breathing, 2))
+            still, undone = (evaluate.score_scene(scenes.FileScene(scene), evaluate.Conditions('', 'none', breathing, 2))
                              for breathing in (0, 0.03))
         self.assertGreater(undone['psnr'], still['psnr'] - 0.7)
 
