@@ -62,9 +62,12 @@ static bool take_changes(GstLensSweepSrc *self)
         return true;
     settings.plan = state.settings.plan;
     const bool rate_changed = settings.rate != state.settings.rate;
+    GST_INFO_OBJECT(self, "rate %g sweeps a second, exposure %g us", settings.rate, settings.exposure_us);
     state.capture->change(settings);
+    GST_OBJECT_LOCK(self);
     state.settings.rate = settings.rate;
     state.settings.exposure_us = settings.exposure_us;
+    GST_OBJECT_UNLOCK(self);
     check_load(self);
     tell_latency(self);
     if (!rate_changed)
@@ -107,19 +110,14 @@ static GstClockTime running_time_of(GstLensSweepSrc *self, gint64 host_ns)
     return moment < base ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(moment - base);
 }
 
-/* Publishes the counts; a QoS message for planes that are missing, a warning of a count that cannot be read.
- */
+/* Publishes the counts; a QoS message for planes that are missing, a warning of what goes wrong although the
+ * stream goes on. */
 static void report(GstLensSweepSrc *self)
 {
     GstLensSweepSrcState &state = *self->state;
     const std::string complaint = state.capture->take_complaint();
     if (!complaint.empty())
-        GST_ELEMENT_WARNING(
-            self, RESOURCE, READ,
-            ("The sequencer's count of triggers cannot be read: %s. The sync line alone tells "
-             "planes until it can. Check the wires and the speed of the I2C bus.",
-             complaint.c_str()),
-            (nullptr));
+        GST_ELEMENT_WARNING(self, RESOURCE, READ, ("%s", complaint.c_str()), (nullptr));
     const dff::CaptureCounts counts = state.capture->counts();
     GST_OBJECT_LOCK(self);
     state.counts = counts;

@@ -20,7 +20,7 @@ void SyncTagger::begin(std::chrono::microseconds period)
 std::optional<PlaneLabel> SyncTagger::label(std::optional<uint64_t> time_ns)
 {
     /* The edge of a frame came as its exposure began, long before the frame: it waits in the kernel. */
-    while (const auto edge = line_->wait({}, std::chrono::nanoseconds{0})) {
+    while (const auto edge = line_->read()) {
         cycle_.add_edge(edge->time_ns);
         edges_++;
     }

@@ -45,13 +45,12 @@ std::vector<std::string> strings(const char **names, guint count)
 
 } // namespace
 
-AravisCamera::AravisCamera(const std::string &name) : camera_(open_camera(name))
+AravisCamera::AravisCamera(const std::string &name, std::function<void()> on_gone)
+    : camera_(open_camera(name)), on_gone_(std::move(on_gone))
 {
     const auto lost = +[](ArvDevice *, AravisCamera *self) {
         self->gone_ = true;
-        const std::lock_guard lock(self->gone_mutex_);
-        if (self->on_gone_)
-            self->on_gone_();
+        self->on_gone_();
     };
     gone_signal_ =
         g_signal_connect(arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(lost), this);
@@ -67,10 +66,15 @@ AravisCamera::~AravisCamera()
         g_usleep(1000);
 }
 
-void AravisCamera::on_gone(std::function<void()> gone)
+/* Aravis asks several times before it says that nobody answers. */
+void AravisCamera::check(const CallError &error, const std::string &what)
 {
-    const std::lock_guard lock(gone_mutex_);
-    on_gone_ = std::move(gone);
+    if (error.is(ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_TIMEOUT) ||
+        error.is(ARV_DEVICE_ERROR, ARV_DEVICE_ERROR_NOT_CONNECTED)) {
+        gone_ = true;
+        throw CameraError(camera_gone);
+    }
+    error.check<CameraError>("the camera refuses " + what);
 }
 
 /* One call of Aravis's at a time; what it says of an error becomes an exception. */
@@ -80,10 +84,10 @@ template <typename Call> auto AravisCamera::call(const std::string &what, Call c
     CallError error;
     if constexpr (std::is_void_v<decltype(call(camera_.get(), error.out()))>) {
         call(camera_.get(), error.out());
-        error.check<CameraError>("the camera refuses " + what);
+        check(error, what);
     } else {
         auto result = call(camera_.get(), error.out());
-        error.check<CameraError>("the camera refuses " + what);
+        check(error, what);
         return result;
     }
 }

@@ -36,12 +36,12 @@ class AravisCamera : public CameraControl {
 public:
     /* Opens a camera by its id, serial number, MAC or IP address, as `arv-tool-0.8` lists them; an empty name
      * is the first one found, "Fake_1" one that Aravis simulates. Throws CameraError, with a list of the
-     * cameras found. */
-    explicit AravisCamera(const std::string &name);
+     * cameras found. `on_gone` is called, from a thread of Aravis's, when the camera does not answer any
+     * more. */
+    explicit AravisCamera(
+        const std::string &name, std::function<void()> on_gone = [] {});
     ~AravisCamera() override;
 
-    /* `gone` is called, from a thread of Aravis's, when the camera does not answer any more. */
-    void on_gone(std::function<void()> gone);
     bool gone() const { return gone_; }
 
     ArvCamera *handle() const { return camera_.get(); }
@@ -96,13 +96,13 @@ public:
 
 private:
     template <typename Call> auto call(const std::string &what, Call call);
+    void check(const CallError &error, const std::string &what);
 
     /* Guards Aravis's tree of features, whose nodes are not made for threads. Nothing is locked within. */
     std::mutex mutex_;
     ObjectRef<ArvCamera> camera_;
     std::atomic<bool> gone_ = false;
-    std::mutex gone_mutex_; /* guards on_gone_, which is called with it held */
-    std::function<void()> on_gone_;
+    const std::function<void()> on_gone_;
     gulong gone_signal_ = 0;
 };
 

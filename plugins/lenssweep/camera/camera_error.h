@@ -12,4 +12,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/* However it shows. */
+inline constexpr const char *camera_gone =
+    "The camera does not answer any more. Check its cable and power, then start again.";
+
 } // namespace dff

@@ -3,8 +3,8 @@
 #include "camera_stream.h"
 
 #include "camera_error.h"
+#include "capture_poll.h"
 
-#include <chrono>
 #include <utility>
 
 namespace dff {
@@ -33,11 +33,6 @@ private:
     std::mutex mutex_; /* guards stream_; nothing of ours is locked within */
     ArvStream *stream_;
 };
-
-std::int64_t host_now_ns()
-{
-    return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 CameraBuffer::CameraBuffer(ArvBuffer *buffer, std::shared_ptr<BufferReturn> way_back, std::int64_t arrival_ns)
     : buffer_(buffer), way_back_(std::move(way_back)), arrival_ns_(arrival_ns)
@@ -83,7 +78,9 @@ std::span<std::uint8_t> CameraBuffer::pixels() const
     return {static_cast<std::uint8_t *>(const_cast<void *>(data)), size};
 }
 
-CameraStream::CameraStream(AravisCamera &camera, unsigned buffers, std::size_t payload)
+CameraStream::CameraStream(AravisCamera &camera, unsigned buffers, std::size_t payload,
+                           std::function<void()> on_frame)
+    : on_frame_(std::move(on_frame))
 {
     CallError error;
     stream_.reset(arv_camera_create_stream(camera.handle(), nullptr, nullptr, error.out()));
@@ -93,7 +90,7 @@ CameraStream::CameraStream(AravisCamera &camera, unsigned buffers, std::size_t p
     way_back_ = std::make_shared<BufferReturn>(stream_.get());
     for (unsigned i = 0; i < buffers; i++)
         arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
-    g_signal_connect(stream_.get(), "new-buffer", G_CALLBACK(take), this);
+    g_signal_connect(stream_.get(), "new-buffer", G_CALLBACK(put), this);
     arv_stream_set_emit_signals(stream_.get(), TRUE);
 }
 
@@ -102,37 +99,30 @@ CameraStream::~CameraStream()
     g_signal_handlers_disconnect_by_data(stream_.get(), this);
     arv_stream_set_emit_signals(stream_.get(), FALSE);
     way_back_->close();
-    stream_.reset(); /* joins its thread, which may still be in take() */
+    stream_.reset(); /* joins its thread, which may still be in put() */
 }
 
 /* In Aravis's thread, right after the frame is complete. */
-void CameraStream::take(ArvStream *stream, CameraStream *self)
+void CameraStream::put(ArvStream *stream, CameraStream *self)
 {
     ArvBuffer *buffer = arv_stream_try_pop_buffer(stream);
     if (!buffer)
         return;
-    const std::lock_guard lock(self->mutex_);
-    self->arrived_.emplace_back(buffer, self->way_back_, host_now_ns());
-    self->changed_.notify_all();
+    {
+        const std::lock_guard lock(self->mutex_);
+        self->arrived_.emplace_back(buffer, self->way_back_, host_now_ns());
+    }
+    self->on_frame_();
 }
 
-std::optional<CameraBuffer> CameraStream::wait(std::int64_t deadline_ns)
+std::optional<CameraBuffer> CameraStream::take()
 {
-    const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(deadline_ns)};
-    std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, deadline, [this] { return interrupted_ || !arrived_.empty(); });
-    if (std::exchange(interrupted_, false) || arrived_.empty())
+    const std::lock_guard lock(mutex_);
+    if (arrived_.empty())
         return std::nullopt;
     std::optional<CameraBuffer> buffer(std::move(arrived_.front()));
     arrived_.pop_front();
     return buffer;
-}
-
-void CameraStream::interrupt()
-{
-    const std::lock_guard lock(mutex_);
-    interrupted_ = true;
-    changed_.notify_all();
 }
 
 std::uint64_t CameraStream::underruns() const

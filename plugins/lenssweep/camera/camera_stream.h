@@ -5,8 +5,8 @@
 #include "aravis_camera.h"
 #include "plane_labeller.h"
 
-#include <condition_variable>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -39,37 +39,30 @@ private:
 /* The frames of a camera that acquires, in the order they come. */
 class CameraStream {
 public:
-    /* Opens the stream, with so many buffers of so many bytes. Throws CameraError. The camera outlives it. */
-    CameraStream(AravisCamera &camera, unsigned buffers, std::size_t payload);
+    /* Opens the stream, with so many buffers of so many bytes. `on_frame` is called, in a thread of Aravis's,
+     * when there is one to take. Throws CameraError. The camera outlives it. */
+    CameraStream(AravisCamera &camera, unsigned buffers, std::size_t payload, std::function<void()> on_frame);
     CameraStream(const CameraStream &) = delete;
     CameraStream &operator=(const CameraStream &) = delete;
 
     /* Buffers that are still in use stay valid. */
     ~CameraStream();
 
-    /* The next frame, or nothing when the host's CLOCK_MONOTONIC passes `deadline_ns` or interrupt() is or
-     * was called. */
-    std::optional<CameraBuffer> wait(std::int64_t deadline_ns);
-
-    /* Ends the wait that is under way, or else the next one. From any thread. */
-    void interrupt();
+    /* The next frame, or nothing if none has come; never waits. */
+    std::optional<CameraBuffer> take();
 
     /* Frames for which no buffer was free. */
     std::uint64_t underruns() const;
 
 private:
-    static void take(ArvStream *stream, CameraStream *self);
+    static void put(ArvStream *stream, CameraStream *self);
 
-    std::mutex mutex_; /* guards the three below; taken within nothing, and nothing is taken within */
-    std::condition_variable changed_;
+    std::function<void()> on_frame_;
+    std::mutex mutex_; /* guards arrived_; nothing is locked within */
     std::deque<CameraBuffer> arrived_;
-    bool interrupted_ = false;
 
     std::shared_ptr<BufferReturn> way_back_;
     ObjectRef<ArvStream> stream_;
 };
-
-/* CLOCK_MONOTONIC in nanoseconds. */
-std::int64_t host_now_ns();
 
 } // namespace dff

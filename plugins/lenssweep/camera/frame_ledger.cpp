@@ -6,6 +6,25 @@
 
 namespace dff {
 
+const char *name_of(Unlabelled reason)
+{
+    switch (reason) {
+    case Unlabelled::Seeking:
+        return "not yet known which trigger is which frame's";
+    case Unlabelled::Invalid:
+        return "not a number of a frame";
+    case Unlabelled::Doubled:
+        return "here already";
+    case Unlabelled::NoTrigger:
+        return "no trigger known that it could be of";
+    case Unlabelled::Disagree:
+        return "its number, its time and the triggers disagree";
+    case Unlabelled::Incomplete:
+        return "packets missing";
+    }
+    return "";
+}
+
 void FrameLedger::restart()
 {
     recent_.fill(std::nullopt);

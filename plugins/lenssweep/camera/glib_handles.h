@@ -25,6 +25,7 @@ public:
 
     GError **out() { return &error_; }
     bool failed() const { return error_ != nullptr; }
+    bool is(GQuark domain, int code) const { return g_error_matches(error_, domain, code) != FALSE; }
 
     /* Throws an Error that begins with `what`. */
     template <typename Error = std::runtime_error> void check(const std::string &what) const

@@ -4,6 +4,7 @@
 
 #include "frame_numbers.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -31,8 +32,13 @@ enum class Unlabelled {
     Invalid,   /* the camera cannot have given this number */
     Doubled,   /* it was here already */
     NoTrigger, /* no trigger is known that it could be of: the edge of its sweep is missing or late */
-    Disagree   /* its number, its time and the triggers do not agree, or did not before in this sweep */
+    Disagree,  /* its number, its time and the triggers do not agree, or did not before in this sweep */
+    Incomplete /* packets of it are missing */
 };
+constexpr std::size_t unlabelled_reasons = 6;
+
+/* For a log. */
+const char *name_of(Unlabelled reason);
 
 struct FrameVerdict {
     std::optional<FrameLabel> label;

@@ -3,10 +3,6 @@
 #include "sweep_capture.h"
 
 #include "camera_error.h"
-#include "free_run.h"
-#include "line_triggers.h"
-#include "software_triggers.h"
-
 #include "lenssweep/lens/open_lens.h"
 
 #include <algorithm>
@@ -17,7 +13,6 @@ namespace dff {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr unsigned most_failures = 5;
 
 /* Parts that do not go together. */
@@ -43,12 +38,12 @@ std::unique_ptr<Lens> open(const CaptureSettings &settings, AravisCamera &camera
 
 } // namespace
 
-SweepCapture::SweepCapture(const CaptureSettings &settings)
-    : settings_(checked(settings)), camera_(settings.camera), lens_(open(settings, camera_)),
+SweepCapture::SweepCapture(const CaptureSettings &settings, CaptureLog log)
+    : log_(std::move(log)), settings_(checked(settings)), camera_(settings.camera, [this] { poll_.wake(); }),
+      lens_(open(settings, camera_)),
       run_(settings.run_line.empty() ? nullptr : open_output_line(settings.run_line)),
       sync_(settings.sync_line.empty() ? nullptr : open_edge_line(settings.sync_line))
 {
-    camera_.on_gone([this] { interrupt(); });
     set_exposure(camera_, settings_.exposure_us);
     if (settings_.gain)
         set_gain(camera_, *settings_.gain);
@@ -60,7 +55,6 @@ SweepCapture::SweepCapture(const CaptureSettings &settings)
 SweepCapture::~SweepCapture()
 {
     stop();
-    camera_.on_gone(nullptr);
 }
 
 /* Whole microseconds, which is what sequencers count in. */
@@ -81,7 +75,7 @@ void SweepCapture::make_triggers()
         sweep_base_ = next_sweep_;
     }
     const FrameNumbers numbers(camera_.numbering());
-    const auto woken = [this] { interrupt(); };
+    const auto woken = [this] { poll_.wake(); };
     if (settings_.trigger == TriggerKind::FreeRun)
         triggers_ = std::make_unique<FreeRun>(timing_, numbers);
     else if (settings_.trigger == TriggerKind::Software)
@@ -102,8 +96,7 @@ void SweepCapture::start(const PixelLayout &layout, int width, int height)
     camera_.set_pixel_format(layout.genicam);
     camera_.set_region(region);
     set_up_trigger(camera_, {settings_.trigger, settings_.trigger_source, settings_.frame_rate()});
-    lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
-                    std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
+    prepare_lens();
 
     const double link_bits = camera_.told_link_bits();
     timing_.transfer_ns =
@@ -113,14 +106,16 @@ void SweepCapture::start(const PixelLayout &layout, int width, int height)
     begin_triggers();
 }
 
+void SweepCapture::prepare_lens()
+{
+    lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
+                    std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
+}
+
 void SweepCapture::acquire()
 {
     buffers_ = std::max(16U, static_cast<unsigned>(std::lround(settings_.frame_rate() / 4)));
-    auto stream = std::make_unique<CameraStream>(camera_, buffers_, camera_.payload());
-    {
-        const std::lock_guard lock(stream_mutex_);
-        stream_ = std::move(stream);
-    }
+    stream_ = std::make_unique<CameraStream>(camera_, buffers_, camera_.payload(), [this] { poll_.wake(); });
     camera_.start_acquisition();
     wait_armed();
 }
@@ -131,7 +126,6 @@ void SweepCapture::end_acquisition() noexcept
         return;
     camera_.stop_acquisition();
     underruns_ += stream_->underruns();
-    const std::lock_guard lock(stream_mutex_);
     stream_.reset();
 }
 
@@ -158,6 +152,14 @@ void SweepCapture::begin_triggers()
     quiet_until_ns_.reset();
     last_frame_ns_ = host_now_ns();
     triggers_->start();
+    log_.event("triggers begin");
+}
+
+/* They begin again when the frames that are under way are surely here. */
+void SweepCapture::rest_triggers()
+{
+    triggers_->stop();
+    quiet_until_ns_ = host_now_ns() + 2 * timing_.sweep_ns;
 }
 
 void SweepCapture::stop() noexcept
@@ -185,17 +187,16 @@ void SweepCapture::change(const CaptureSettings &settings)
     set_timing();
     if (!stream_)
         return;
-    triggers_->stop();
-    lens_->prepare({settings_.plan, std::chrono::microseconds(timing_.period_ns / 1000),
-                    std::chrono::microseconds(timing_.exposure_ns / 1000), run_ != nullptr});
+    rest_triggers();
+    prepare_lens();
     make_triggers();
-    quiet_until_ns_ = host_now_ns() + 2 * timing_.sweep_ns;
 }
 
 /* The planes cannot be told any more. */
 void SweepCapture::recover()
 {
     failures_++;
+    labels_ = 0;
     const bool counted = settings_.trigger == TriggerKind::Line && !sync_;
     if (counted && !triggers_->restartable())
         throw CameraError(
@@ -209,32 +210,38 @@ void SweepCapture::recover()
             "and the time that the link needs for it. One that heeds no trigger, as most "
             "simulated cameras, needs trigger=free-run.");
     restarts_++;
-    if (triggers_->restartable()) {
-        triggers_->stop();
-        quiet_until_ns_ = host_now_ns() + 2 * timing_.sweep_ns;
-    } else {
+    log_.event("planes cannot be told any more: the triggers begin anew");
+    if (triggers_->restartable())
+        rest_triggers();
+    else
         triggers_->start();
-    }
+}
+
+FrameVerdict SweepCapture::judge(const CameraBuffer &buffer, const CameraFrame &frame)
+{
+    if (buffer.complete())
+        return triggers_->label(frame);
+    incomplete_++;
+    return {std::nullopt, Unlabelled::Incomplete};
 }
 
 std::optional<CapturedPlane> SweepCapture::labelled(CameraBuffer buffer)
 {
     last_frame_ns_ = host_now_ns();
-    if (!buffer.complete()) {
-        incomplete_++;
-        return std::nullopt;
-    }
     if (quiet_until_ns_) {
         unlabelled_++;
         return std::nullopt;
     }
     const CameraFrame frame = buffer.facts();
-    const auto verdict = triggers_->label(frame);
+    const FrameVerdict verdict = judge(buffer, frame);
+    log_.judged(frame, verdict);
+    watch_.judged(verdict, triggers_->counts().dropped_sweeps);
     if (triggers_->lost())
         recover();
     if (!verdict.label)
         return std::nullopt;
-    failures_ = 0;
+    if (++labels_ >= timing_.planes)
+        failures_ = 0;
     const std::int64_t exposed_ns = clock_.exposed_ns(frame, timing_.exposure_ns);
     const std::uint64_t sweep = sweep_base_ + verdict.label->sweep;
     next_sweep_ = std::max(next_sweep_, sweep + 1);
@@ -242,28 +249,47 @@ std::optional<CapturedPlane> SweepCapture::labelled(CameraBuffer buffer)
                          verdict.label->trigger_ns.value_or(exposed_ns)};
 }
 
-std::optional<CapturedPlane> SweepCapture::next(std::int64_t deadline_ns)
+/* A camera that is gone takes with it what is in its hands, as a lens. */
+void SweepCapture::hear_triggers()
 {
-    std::int64_t now_ns = host_now_ns();
-    if (camera_.gone())
-        throw CameraError(
-            "The camera does not answer any more. Check its cable and power, then start again.");
-    if (now_ns >= next_check_ns_) {
-        triggers_->check();
-        next_check_ns_ = now_ns + second_ns;
+    try {
+        triggers_->hear();
+    } catch (const std::exception &) {
+        if (camera_.gone())
+            throw CameraError(camera_gone);
+        throw;
     }
-    if (quiet_until_ns_ && now_ns >= *quiet_until_ns_)
-        begin_anew();
-    auto buffer =
-        stream_->wait(std::min({deadline_ns, next_check_ns_, quiet_until_ns_.value_or(deadline_ns)}));
-    return buffer ? labelled(std::move(*buffer)) : std::nullopt;
 }
 
-void SweepCapture::interrupt()
+/* A frame is taken before the triggers are heard, so that its own is known. */
+std::optional<CapturedPlane> SweepCapture::next(std::int64_t deadline_ns)
 {
-    const std::lock_guard lock(stream_mutex_);
-    if (stream_)
-        stream_->interrupt();
+    while (true) {
+        if (camera_.gone())
+            throw CameraError(camera_gone);
+        auto buffer = stream_->take();
+        hear_triggers();
+        if (buffer)
+            return labelled(std::move(*buffer));
+        const std::int64_t now_ns = host_now_ns();
+        if (quiet_until_ns_ && now_ns >= *quiet_until_ns_)
+            begin_anew();
+        if (interrupted_.exchange(false) || now_ns >= deadline_ns)
+            return std::nullopt;
+        poll_.wait(triggers_->descriptor(), std::min(deadline_ns, quiet_until_ns_.value_or(deadline_ns)));
+    }
+}
+
+void SweepCapture::interrupt() noexcept
+{
+    interrupted_ = true;
+    poll_.wake();
+}
+
+std::string SweepCapture::take_complaint()
+{
+    std::string complaint = triggers_ ? triggers_->take_complaint() : std::string();
+    return complaint.empty() ? watch_.take_complaint() : complaint;
 }
 
 CaptureCounts SweepCapture::counts() const

@@ -4,8 +4,10 @@
 
 #include "aravis_camera.h"
 #include "camera_stream.h"
+#include "capture_poll.h"
 #include "capture_settings.h"
 #include "exposure_clock.h"
+#include "label_watch.h"
 #include "link_load.h"
 #include "pixel_layout.h"
 #include "sweep_timing.h"
@@ -14,7 +16,10 @@
 #include "lenssweep/lens/lens.h"
 #include "lenssweep/trigger/lines.h"
 
+#include <atomic>
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace dff {
 
@@ -38,8 +43,18 @@ struct CapturedPlane {
     std::int64_t exposed_ns; /* start of its exposure, by the host's CLOCK_MONOTONIC */
 };
 
+/* Who hears what a capture does, for a log; by the thread that uses the capture. */
+struct CaptureLog {
+    std::function<void(const std::string &)> event = [](const std::string &) {}; /* rare ones */
+    std::function<void(const CameraFrame &, const FrameVerdict &)> judged = [](auto &, auto &) {};
+};
+
 /* A camera behind a swept lens: opens, sets up and starts camera, lens and lines in the order they need, and
  * gives frames their planes. One thread uses it; interrupt() may come from any.
+ *
+ * That thread waits in next() alone, for all there is: frames, edges of the sync line, what the thread beside
+ * it knows of the lens or of the triggers it sends (triggers.h), an interrupt, and times when something is
+ * due.
  *
  * Where labels are lost for good, a sequencer that can be stopped is stopped, and started again from rest.
  * Errors are thrown as CameraError, LensError, LineError or std::invalid_argument; then the capture is over.
@@ -47,7 +62,7 @@ struct CapturedPlane {
 class SweepCapture {
 public:
     /* Opens the camera, the lens and the lines. */
-    explicit SweepCapture(const CaptureSettings &settings);
+    explicit SweepCapture(const CaptureSettings &settings, CaptureLog log = {});
     ~SweepCapture();
     SweepCapture(const SweepCapture &) = delete;
     SweepCapture &operator=(const SweepCapture &) = delete;
@@ -66,12 +81,12 @@ public:
     /* The next plane, or nothing after interrupt(), at `deadline_ns` of the host's CLOCK_MONOTONIC, and for a
      * frame that has no label. */
     std::optional<CapturedPlane> next(std::int64_t deadline_ns);
-    void interrupt();
+    void interrupt() noexcept;
 
     CaptureCounts counts() const;
 
-    /* What the user should know although planes go on; empty if it was told already. */
-    std::string take_complaint() { return triggers_ ? triggers_->take_complaint() : std::string(); }
+    /* What the user should know although the stream goes on; empty if it was told already. */
+    std::string take_complaint();
 
     /* From the start of an exposure to the arrival of the frame, at the most that labels can be told at. */
     std::int64_t latency_ns() const { return timing_.exposure_ns + timing_.transfer_ns + timing_.period_ns; }
@@ -86,14 +101,21 @@ public:
 private:
     void set_timing();
     void make_triggers();
+    void prepare_lens();
     void acquire();
     void end_acquisition() noexcept;
     void wait_armed();
     void begin_triggers();
     void begin_anew();
+    void rest_triggers();
     void recover();
+    void hear_triggers();
+    FrameVerdict judge(const CameraBuffer &buffer, const CameraFrame &frame);
     std::optional<CapturedPlane> labelled(CameraBuffer buffer);
 
+    CapturePoll poll_; /* woken by parts of the camera, the stream and the triggers until their ends */
+    std::atomic<bool> interrupted_ = false;
+    CaptureLog log_;
     CaptureSettings settings_;
     AravisCamera camera_;
     std::unique_ptr<Lens> lens_;
@@ -102,11 +124,10 @@ private:
 
     SweepTiming timing_;
     unsigned buffers_ = 0;
-    std::mutex
-        stream_mutex_; /* guards the pointer stream_ against interrupt(); nothing is locked before it */
     std::unique_ptr<CameraStream> stream_;
     std::unique_ptr<Triggers> triggers_;
     ExposureClock clock_;
+    LabelWatch watch_{settings_.plan.planes()};
     CaptureCounts before_; /* of triggers that are gone */
     std::uint64_t incomplete_ = 0;
     std::uint64_t underruns_ = 0; /* of streams that are gone */
@@ -114,9 +135,9 @@ private:
     std::uint64_t unlabelled_ = 0; /* while triggers came to rest, since before_ */
     std::uint64_t sweep_base_ = 0; /* of the labels' sweeps */
     std::uint64_t next_sweep_ = 0; /* the first one no plane had */
-    unsigned failures_ = 0;        /* recoveries without one label since */
+    unsigned failures_ = 0;        /* recoveries without a sweep's number of labels between them */
+    unsigned labels_ = 0;          /* since the last one */
     std::int64_t last_frame_ns_ = 0;
-    std::int64_t next_check_ns_ = 0;
     std::optional<std::int64_t> quiet_until_ns_; /* then the triggers begin */
 };
 

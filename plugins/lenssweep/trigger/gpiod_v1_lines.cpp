@@ -2,8 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gpio_lines.h"
 
-#include "descriptor_wait.h"
-
 #include <algorithm>
 #include <cerrno>
 #include <gpiod.h>
@@ -96,14 +94,16 @@ public:
         }
     }
 
-    std::optional<LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds timeout) override
+    int descriptor() const override { return gpiod_line_event_get_fd(line_.get()); }
+
+    std::optional<LineEdge> read() override
     {
-        const short seen = woken_.wait(gpiod_line_event_get_fd(line_.get()), stop, timeout);
-        if (seen & (POLLERR | POLLHUP | POLLNVAL)) {
-            throw LineError("cannot wait for edges of the GPIO line \"" + name_ + "\": its chip has gone");
-        }
-        if (!(seen & POLLIN)) {
+        pollfd events{descriptor(), POLLIN, 0};
+        if (poll(&events, 1, 0) <= 0) {
             return std::nullopt;
+        }
+        if (events.revents & (POLLERR | POLLHUP | POLLNVAL)) {
+            throw LineError("cannot wait for edges of the GPIO line \"" + name_ + "\": its chip has gone");
         }
         gpiod_line_event event{};
         if (gpiod_line_event_read(line_.get(), &event) < 0) {
@@ -116,7 +116,6 @@ public:
 private:
     std::string name_;
     Line line_;
-    DescriptorWait woken_;
 };
 
 } // namespace

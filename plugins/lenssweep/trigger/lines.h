@@ -2,12 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 
 namespace dff {
@@ -24,7 +22,7 @@ public:
     /* Drives the line low and gives it back. */
     virtual ~OutputLine() = default;
 
-    /* Throws LineError. */
+    /* Never waits. Throws LineError. */
     virtual void set(bool high) = 0;
 };
 
@@ -40,9 +38,11 @@ public:
     /* Gives the line back. */
     virtual ~EdgeLine() = default;
 
-    /* The next edge, or nothing when `timeout` (at most a day) has passed or `stop` is requested, from any
-     * thread. Throws LineError. */
-    virtual std::optional<LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds timeout) = 0;
+    /* For poll(): it can be read once an edge has come, or the line has failed. */
+    virtual int descriptor() const = 0;
+
+    /* The next edge that has come, or nothing; never waits. Throws LineError. */
+    virtual std::optional<LineEdge> read() = 0;
 };
 
 /* Takes a line, called by its name ("SYNC"), by chip and offset ("gpiochip0:5", "/dev/gpiochip0:5"), or, for

@@ -2,14 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "socket_lines.h"
 
-#include "descriptor_wait.h"
-
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <poll.h>
-#include <string_view>
+#include <chrono>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <system_error>
@@ -24,18 +20,25 @@ std::string reason()
     return std::generic_category().message(errno);
 }
 
-/* The wire to whoever listens at a path. */
+/* The wire to whoever listens at a path. Nothing here waits for the other end: what it does not take at once
+ * it will not take at all. */
 class Wire {
 public:
-    explicit Wire(const std::string &path)
-        : path_(path), socket_(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0))
+    explicit Wire(const std::string &path) : path_(path)
     {
         sockaddr_un address{};
         address.sun_family = AF_UNIX;
-        path.copy(static_cast<char *>(address.sun_path), sizeof address.sun_path - 1);
+        if (path.size() >= sizeof address.sun_path) {
+            throw LineError("the path of the line at the socket \"" + path + "\" is too long: " +
+                            std::to_string(sizeof address.sun_path - 1) + " characters at most");
+        }
+        path.copy(static_cast<char *>(address.sun_path), path.size());
+        socket_ = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
         if (socket_ < 0 || connect(socket_, reinterpret_cast<sockaddr *>(&address), sizeof address) < 0) {
             const std::string why = reason();
-            close(socket_);
+            if (socket_ >= 0) {
+                close(socket_);
+            }
             throw LineError("cannot connect to the line at the socket \"" + path + "\": " + why +
                             ". The process at its other end must be started first");
         }
@@ -45,11 +48,37 @@ public:
     Wire &operator=(const Wire &) = delete;
 
     int descriptor() const { return socket_; }
-    LineError cut() const { return LineError("the other end of the line \"" + path_ + "\" has gone"); }
+
+    void send(const std::string &packet) const
+    {
+        if (::send(socket_, packet.data(), packet.size(), MSG_NOSIGNAL) >= 0) {
+            return;
+        }
+        if (errno == EAGAIN) {
+            throw LineError("the other end of the line \"" + path_ + "\" does not read what it is sent");
+        }
+        throw cut();
+    }
+
+    /* Nothing if no packet has come. */
+    std::optional<std::string> receive() const
+    {
+        std::array<char, 64> packet{};
+        const ssize_t size = recv(socket_, packet.data(), packet.size(), 0);
+        if (size < 0 && errno == EAGAIN) {
+            return std::nullopt;
+        }
+        if (size <= 0) {
+            throw cut();
+        }
+        return std::string(packet.data(), static_cast<std::size_t>(size));
+    }
 
 private:
+    LineError cut() const { return LineError("the other end of the line \"" + path_ + "\" has gone"); }
+
     std::string path_;
-    int socket_;
+    int socket_ = -1;
 };
 
 class SocketOutputLine : public OutputLine {
@@ -59,26 +88,36 @@ public:
     void set(bool high) override
     {
         const auto now = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch());
-        const std::string packet = (high ? "1 " : "0 ") + std::to_string(now.count());
-        if (send(wire_.descriptor(), packet.data(), packet.size(), MSG_NOSIGNAL) < 0) {
-            throw wire_.cut();
-        }
+        wire_.send((high ? "1 " : "0 ") + std::to_string(now.count()));
     }
 
 private:
     Wire wire_;
 };
 
+/* Nothing for a falling edge. */
+std::optional<LineEdge> edge_of(const std::string &packet)
+{
+    LineEdge edge{};
+    const char *const end = packet.data() + packet.size();
+    const bool understood = packet.size() > 2 && packet[1] == ' ' &&
+                            std::from_chars(packet.data() + 2, end, edge.time_ns).ec == std::errc();
+    if (!understood) {
+        throw LineError("the other end of a line sends \"" + packet + "\", not LEVEL TIME");
+    }
+    return packet[0] == '1' ? std::optional(edge) : std::nullopt;
+}
+
 class SocketEdgeLine : public EdgeLine {
 public:
     explicit SocketEdgeLine(const std::string &path) : wire_(path) {}
 
-    std::optional<LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds timeout) override
+    int descriptor() const override { return wire_.descriptor(); }
+
+    std::optional<LineEdge> read() override
     {
-        const auto deadline = std::chrono::steady_clock::now() + timeout;
-        for (auto left = timeout; woken_.wait(wire_.descriptor(), stop, left) != 0;
-             left = deadline - std::chrono::steady_clock::now()) {
-            if (const auto edge = read()) {
+        while (const auto packet = wire_.receive()) {
+            if (const auto edge = edge_of(*packet)) {
                 return edge;
             }
         }
@@ -86,27 +125,7 @@ public:
     }
 
 private:
-    /* Nothing for a falling edge. */
-    std::optional<LineEdge> read() const
-    {
-        std::array<char, 64> packet{};
-        const ssize_t size = recv(wire_.descriptor(), packet.data(), packet.size(), 0);
-        if (size <= 0) {
-            throw wire_.cut();
-        }
-        const std::string_view text(packet.data(), static_cast<size_t>(size));
-        LineEdge edge{};
-        const bool understood =
-            text.size() > 2 && text[1] == ' ' &&
-            std::from_chars(text.data() + 2, text.data() + text.size(), edge.time_ns).ec == std::errc();
-        if (!understood) {
-            throw LineError("the other end of a line sends \"" + std::string(text) + "\", not LEVEL TIME");
-        }
-        return text[0] == '1' ? std::optional(edge) : std::nullopt;
-    }
-
     Wire wire_;
-    DescriptorWait woken_;
 };
 
 } // namespace

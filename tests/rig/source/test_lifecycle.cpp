@@ -91,6 +91,31 @@ TEST(Lifecycle, a_camera_that_is_unplugged_is_an_error_and_can_come_back)
     EXPECT_EQ(stream.watched().wrong + again.watched().wrong, 0U);
 }
 
+/* The camera is asked for a frame, and not asked any more whether it is there. */
+TEST(Lifecycle, a_camera_that_is_unplugged_while_it_is_triggered_by_command_says_what_it_says_otherwise)
+{
+    BenchProcess bench({"--size=160x120", "--lens=register"});
+    WatchedStream stream(bench.unwired_source() + " trigger=software rate=2 lens=genicam:FocalPower" + sink);
+    stream.play();
+    ASSERT_TRUE(stream.wait_for_frames(6, 20s)) << stream.stats();
+    bench.kill();
+    const auto end = stream.wait_for_end(30s);
+    ASSERT_TRUE(end) << "neither error nor end";
+    EXPECT_NE(end->find("The camera does not answer any more"), std::string::npos) << *end;
+}
+
+/* Its first frame after each start may pass for plane 0. */
+TEST(Lifecycle, a_camera_that_heeds_no_trigger_is_an_error_and_does_not_begin_anew_for_ever)
+{
+    BenchProcess bench({"--size=160x120", "--planes=2", "--rate=4"});
+    WatchedStream stream(bench.source() +
+                         " camera=Fake_1 sync-line=\"\" planes=2 rate=4 ! appsink name=labels sync=false");
+    stream.play();
+    const auto end = stream.wait_for_end(30s);
+    ASSERT_TRUE(end) << stream.stats();
+    EXPECT_NE(end->find("trigger=free-run"), std::string::npos) << *end;
+}
+
 TEST(Lifecycle, a_camera_that_another_program_controls_is_an_error_and_its_stream_goes_on)
 {
     BenchProcess bench({"--size=160x120"});

@@ -4,6 +4,7 @@
 
 #include "frame_stamp.h"
 
+#include <future>
 #include <gst/dff/dff.h>
 #include <sstream>
 #include <stdexcept>
@@ -78,6 +79,13 @@ void WatchedStream::examine(GstSample *sample)
     const std::optional<Truth> truth = read_stamp(buffer);
     const std::scoped_lock lock(mutex_);
     watched_.frames++;
+    watched_.exposure_ns = label ? label->exposure : 0;
+    const GstStructure *caps = gst_caps_get_structure(gst_sample_get_caps(sample), 0);
+    gst_structure_get_int(caps, "width", &watched_.width);
+    gint numerator = 0;
+    gint denominator = 1;
+    gst_structure_get_fraction(caps, "framerate", &numerator, &denominator);
+    watched_.frame_rate = static_cast<double>(numerator) / denominator;
     if (!label) {
         watched_.unlabelled++;
         return;
@@ -102,12 +110,30 @@ Watched WatchedStream::watched() const
     return watched_;
 }
 
-bool WatchedStream::wait_for_frames(uint64_t count, std::chrono::milliseconds time) const
+bool WatchedStream::stop_within(std::chrono::milliseconds time)
+{
+    std::promise<void> stopped;
+    auto done = stopped.get_future();
+    std::thread([promise = std::move(stopped), pipeline = gst_object_ref(pipeline_.get())]() mutable {
+        gst_element_set_state(GST_ELEMENT(pipeline), GST_STATE_NULL);
+        gst_object_unref(pipeline);
+        promise.set_value();
+    }).detach();
+    return done.wait_for(time) == std::future_status::ready;
+}
+
+bool WatchedStream::wait_until(const std::function<bool(const Watched &)> &so,
+                               std::chrono::milliseconds time) const
 {
     const auto end = std::chrono::steady_clock::now() + time;
-    while (watched().frames < count && std::chrono::steady_clock::now() < end)
+    while (!so(watched()) && std::chrono::steady_clock::now() < end)
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return watched().frames >= count;
+    return so(watched());
+}
+
+bool WatchedStream::wait_for_frames(uint64_t count, std::chrono::milliseconds time) const
+{
+    return wait_until([count](const Watched &watched) { return watched.frames >= count; }, time);
 }
 
 void WatchedStream::wait_for_silence(std::chrono::milliseconds silence) const

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <gst/app/app.h>
 #include <gst/gst.h>
 #include <map>
@@ -20,6 +21,11 @@ struct Watched {
     uint64_t unlabelled = 0;
     uint64_t wrong = 0; /* the label is not that of the picture */
     std::string first_wrong;
+
+    /* Of the last frame. */
+    uint64_t exposure_ns = 0;
+    int width = 0;
+    double frame_rate = 0; /* as its caps say */
 };
 
 /* A pipeline that ends in "appsink name=labels", whose GRAY8 frames carry the bench camera's stamp: it holds
@@ -38,10 +44,16 @@ public:
     void play();
     void stop() { gst_element_set_state(pipeline_.get(), GST_STATE_NULL); }
 
+    /* False if that takes longer. It goes on then, and the process cannot end as it should. */
+    bool stop_within(std::chrono::milliseconds time);
+
     Watched watched() const;
 
     /* False if there were not so many frames in time. */
     bool wait_for_frames(uint64_t count, std::chrono::milliseconds time) const;
+
+    /* False if what went through did not become so in time. */
+    bool wait_until(const std::function<bool(const Watched &)> &so, std::chrono::milliseconds time) const;
 
     /* Until no frame has come for so long. */
     void wait_for_silence(std::chrono::milliseconds silence) const;

@@ -2,14 +2,16 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 /* The capture without GStreamer, with the camera that Aravis simulates in this process. Thread sanitizer sees
  * every lock here; see tests/tsan.sh. */
-#include "lenssweep/camera/line_triggers.h"
 #include "lenssweep/camera/sweep_capture.h"
+#include "lenssweep/camera/triggers.h"
 
 #include <atomic>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
+#include <sys/eventfd.h>
 #include <thread>
+#include <unistd.h>
 
 namespace {
 
@@ -63,24 +65,41 @@ struct CountingSequencer : dff::SequencedLens {
 };
 
 /* A sync line whose edges come when the test says so. */
-struct TestedLine : dff::EdgeLine {
-    std::atomic<std::int64_t> next_ns = 0;
+class TestedLine : public dff::EdgeLine {
+public:
+    TestedLine() : readable_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+    ~TestedLine() override { close(readable_); }
+    TestedLine(const TestedLine &) = delete;
+    TestedLine &operator=(const TestedLine &) = delete;
 
-    std::optional<dff::LineEdge> wait(const std::stop_token &stop, std::chrono::nanoseconds) override
+    void edge(std::int64_t time_ns)
     {
-        while (!stop.stop_requested()) {
-            if (const std::int64_t time_ns = next_ns.exchange(0))
-                return dff::LineEdge{static_cast<std::uint64_t>(time_ns)};
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        return std::nullopt;
+        next_ns_ = time_ns;
+        eventfd_write(readable_, 1);
     }
+
+    int descriptor() const override { return readable_; }
+
+    std::optional<dff::LineEdge> read() override
+    {
+        eventfd_t edges = 0;
+        if (eventfd_read(readable_, &edges) != 0)
+            return std::nullopt;
+        return dff::LineEdge{static_cast<std::uint64_t>(next_ns_.load())};
+    }
+
+private:
+    int readable_;
+    std::atomic<std::int64_t> next_ns_ = 0;
 };
 
-bool comes_true(const std::function<bool()> &what)
+/* As the capture does it: what there is to hear is heard. */
+bool comes_true(dff::Triggers &triggers, const std::function<bool()> &what)
 {
-    for (int i = 0; i < 10'000 && !what(); i++)
+    for (int i = 0; i < 10'000 && !what(); i++) {
+        triggers.hear();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     return what();
 }
 
@@ -189,7 +208,7 @@ TEST(LineTriggers, count_what_the_sequencer_has_given)
     EXPECT_EQ(triggers.given(), 0U);
     triggers.start();
     lens.count += 10;
-    EXPECT_TRUE(comes_true([&] { return triggers.given() == 10U; })) << "each second";
+    EXPECT_TRUE(comes_true(triggers, [&] { return triggers.given() == 10U; })) << "each second";
     lens.count += 10; /* its 32 bits wrap */
     triggers.stop();
     EXPECT_EQ(triggers.given(), 20U);
@@ -207,15 +226,15 @@ TEST(LineTriggers, read_the_count_in_each_sweep_and_hold_it_against_the_edge)
     dff::LineTriggers triggers(slow_sweeps, sixteen_bits, {&lens, nullptr, &line}, [] {});
     triggers.start();
     lens.count = 1;
-    line.next_ns = dff::host_now_ns();
-    ASSERT_TRUE(comes_true([&] { return triggers.given() == 1U; }));
+    line.edge(dff::host_now_ns());
+    ASSERT_TRUE(comes_true(triggers, [&] { return triggers.given() == 1U; }));
     lens.count = 3; /* when it has come to rest */
     triggers.stop();
     EXPECT_EQ(triggers.wrong_counts(), 0U);
     triggers.start();
     lens.count = 3 + 3; /* plane 2 */
-    line.next_ns = dff::host_now_ns();
-    EXPECT_TRUE(comes_true([&] { return triggers.wrong_counts() == 1U; }));
+    line.edge(dff::host_now_ns());
+    EXPECT_TRUE(comes_true(triggers, [&] { return triggers.wrong_counts() == 1U; }));
     EXPECT_EQ(triggers.take_complaint(), "");
 }
 
@@ -226,13 +245,13 @@ TEST(LineTriggers, tell_once_that_the_count_cannot_be_read_and_go_on)
     triggers.start();
     lens.readable = false;
     const int before = lens.readings;
-    ASSERT_TRUE(comes_true([&] { return lens.readings >= before + 2; }));
+    ASSERT_TRUE(comes_true(triggers, [&] { return lens.readings >= before + 2; }));
     EXPECT_NE(triggers.take_complaint().find("no acknowledge"), std::string::npos);
     EXPECT_EQ(triggers.take_complaint(), "");
-    triggers.check();
+    triggers.hear();
     lens.count += 7;
     lens.readable = true;
-    EXPECT_TRUE(comes_true([&] { return triggers.given() == 7U; }));
+    EXPECT_TRUE(comes_true(triggers, [&] { return triggers.given() == 7U; }));
 }
 
 TEST(SweepCapture, starts_and_stops_as_often_as_wanted)

@@ -3,6 +3,7 @@
 #include "label_bench.h"
 
 #include "lenssweep/camera/counting_labeller.h"
+#include "lenssweep/camera/label_watch.h"
 #include "lenssweep/camera/sent_triggers.h"
 
 #include <gtest/gtest.h>
@@ -248,4 +249,59 @@ TEST(Counting, gives_up_when_the_triggers_rest)
     ASSERT_TRUE(again.label);
     EXPECT_EQ(again.label->plane, 0U);
     EXPECT_EQ(again.label->sweep, 2U);
+}
+
+namespace {
+
+void watch(dff::LabelWatch &watch, int frames, const dff::FrameVerdict &verdict, std::uint64_t dropped = 0)
+{
+    for (int i = 0; i < frames; i++)
+        watch.judged(verdict, dropped);
+}
+
+dff::FrameVerdict label_of(std::uint64_t sweep)
+{
+    return {dff::FrameLabel{sweep, 0, std::nullopt}, {}};
+}
+
+} // namespace
+
+TEST(LabelWatch, tells_once_that_no_label_comes_and_why)
+{
+    for (const auto &[reason, word] :
+         {std::pair(Unlabelled::Incomplete, "packets"), std::pair(Unlabelled::NoTrigger, "sync-line"),
+          std::pair(Unlabelled::Disagree, "trigger=free-run")}) {
+        dff::LabelWatch labels(6);
+        watch(labels, 6 * 20 - 1, {std::nullopt, reason});
+        EXPECT_EQ(labels.take_complaint(), "");
+        watch(labels, 6 * 100, {std::nullopt, reason});
+        EXPECT_NE(labels.take_complaint().find(word), std::string::npos);
+        watch(labels, 6, label_of(1));
+        watch(labels, 6 * 100, {std::nullopt, reason});
+        EXPECT_EQ(labels.take_complaint(), "") << "told already";
+    }
+}
+
+TEST(LabelWatch, another_cause_is_told_as_well)
+{
+    dff::LabelWatch labels(6);
+    watch(labels, 6 * 20, {std::nullopt, Unlabelled::NoTrigger});
+    EXPECT_NE(labels.take_complaint(), "");
+    watch(labels, 6, label_of(1));
+    watch(labels, 6 * 20, {std::nullopt, Unlabelled::Incomplete});
+    EXPECT_NE(labels.take_complaint().find("packets"), std::string::npos);
+}
+
+TEST(LabelWatch, tells_of_sweeps_that_are_dropped_in_a_row)
+{
+    for (const bool whole_between : {false, true}) {
+        dff::LabelWatch labels(6);
+        for (std::uint64_t sweep = 1; sweep <= 30; sweep++) {
+            watch(labels, 3, label_of(2 * sweep), sweep - 1);
+            watch(labels, 3, {std::nullopt, Unlabelled::Disagree}, sweep);
+            if (whole_between)
+                watch(labels, 6, label_of(2 * sweep + 1), sweep);
+        }
+        EXPECT_EQ(labels.take_complaint().empty(), whole_between);
+    }
 }
