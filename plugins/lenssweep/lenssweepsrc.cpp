@@ -67,6 +67,32 @@ static void put_capture(GstLensSweepSrc *self, std::shared_ptr<dff::SweepCapture
     GST_OBJECT_UNLOCK(self);
 }
 
+static void put_settings(GstLensSweepSrc *self, const dff::CaptureSettings &settings)
+{
+    GST_OBJECT_LOCK(self);
+    self->state->settings = settings;
+    GST_OBJECT_UNLOCK(self);
+}
+
+static void log_verdict(GstLensSweepSrc *self, const dff::CameraFrame &frame,
+                        const dff::FrameVerdict &verdict)
+{
+    if (verdict.label)
+        GST_LOG_OBJECT(self, "frame %" G_GUINT64_FORMAT ": sweep %" G_GUINT64_FORMAT " plane %u", frame.id,
+                       verdict.label->sweep, verdict.label->plane);
+    else
+        GST_DEBUG_OBJECT(self, "frame %" G_GUINT64_FORMAT " is dropped: %s", frame.id,
+                         dff::name_of(verdict.reason));
+}
+
+static dff::CaptureLog capture_log(GstLensSweepSrc *self)
+{
+    return {
+        [self](const std::string &event) { GST_INFO_OBJECT(self, "%s", event.c_str()); },
+        [self](const auto &frame, const auto &verdict) { log_verdict(self, frame, verdict); },
+    };
+}
+
 static void warn_of_blind_labels(GstLensSweepSrc *self, const dff::CaptureSettings &settings)
 {
     const bool started_here = !settings.run_line.empty() || settings.lens.starts_with("fpga:");
@@ -101,9 +127,10 @@ static gboolean start(GstBaseSrc *source)
     state.format = {};
     state.running = false;
     state.missing = 0;
+    state.failed = false;
     try {
-        state.settings = properties.settings();
-        auto capture = std::make_shared<dff::SweepCapture>(state.settings);
+        put_settings(self, properties.settings());
+        auto capture = std::make_shared<dff::SweepCapture>(state.settings, capture_log(self));
         GST_INFO_OBJECT(self, "camera %s", capture->camera().title().c_str());
         state.clock_caps = capture->camera().has_ptp()
                                ? gst_caps_from_string("timestamp/x-ptp,version=IEEE1588-2008,domain=0")
@@ -204,6 +231,7 @@ static gboolean set_caps(GstBaseSrc *source, GstCaps *caps)
             return FALSE;
         if (format == state.format)
             return TRUE; /* only the frame rate is another */
+        GST_INFO_OBJECT(self, "pictures are %" GST_PTR_FORMAT, caps);
         warn_of_odd_size(self, format);
         state.format = format;
         state.running = false;
@@ -251,6 +279,19 @@ static GstStateChangeReturn change_state(GstElement *element, GstStateChange tra
     if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING)
         self->state->playing_since_ns = dff::host_now_ns();
     return GST_ELEMENT_CLASS(gst_lens_sweep_src_parent_class)->change_state(element, transition);
+}
+
+/* Once an error of this element is on the bus, what GstBaseSrc adds to it ("failed to post a proper error
+ * message", "Internal data stream error") would only hide it. */
+static gboolean post_message(GstElement *element, GstMessage *message)
+{
+    auto *self = GST_LENS_SWEEP_SRC(element);
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR && self->state->failed.exchange(true)) {
+        GST_DEBUG_OBJECT(self, "not posted: %" GST_PTR_FORMAT, message);
+        gst_message_unref(message);
+        return TRUE;
+    }
+    return GST_ELEMENT_CLASS(gst_lens_sweep_src_parent_class)->post_message(element, message);
 }
 
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
@@ -313,6 +354,7 @@ static void gst_lens_sweep_src_class_init(GstLensSweepSrcClass *klass)
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
     element_class->change_state = change_state;
+    element_class->post_message = post_message;
     source_class->start = start;
     source_class->stop = stop;
     source_class->unlock = unlock;

@@ -25,12 +25,14 @@ struct GstLensSweepSrcState {
     GstClockTime latency = GST_CLOCK_TIME_NONE;
     GstClockTime max_latency = GST_CLOCK_TIME_NONE;
     std::shared_ptr<dff::SweepCapture> capture; /* the pointer; set by start() and stop() */
+    dff::CaptureSettings settings;              /* written by start() and the streaming thread, which alone
+                                                   read it without the lock */
 
     std::atomic<bool> flushing = false;
+    std::atomic<bool> failed = false;         /* an error was posted since the start */
     std::atomic<gint64> playing_since_ns = 0; /* frames that arrived before are stale */
 
     /* The streaming thread's alone, between start() and stop(). */
-    dff::CaptureSettings settings;
     CameraFormat format;
     bool running = false;
     guint64 missing = 0; /* planes that were reported */

@@ -39,6 +39,36 @@ unsigned cycles()
     return value ? static_cast<unsigned>(std::stoul(value)) : 20;
 }
 
+/* What a pipeline that fails says: its errors and warnings, in order. */
+std::vector<std::string> words_of_failure(const std::string &description)
+{
+    Pipeline pipeline(description);
+    pipeline.set_state(GST_STATE_PLAYING);
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline.get());
+    std::vector<std::string> words;
+    GstClockTime patience = 20 * GST_SECOND;
+    while (GstMessage *message = gst_bus_timed_pop_filtered(
+               bus, patience, static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_WARNING))) {
+        g_autoptr(GError) error = nullptr;
+        if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+            gst_message_parse_error(message, &error, nullptr);
+            words.push_back(std::string("error: ") + error->message);
+            patience = 200 * GST_MSECOND; /* for what may follow */
+        } else {
+            gst_message_parse_warning(message, &error, nullptr);
+            words.push_back(std::string("warning: ") + error->message);
+        }
+        gst_message_unref(message);
+    }
+    return words;
+}
+
+std::ptrdiff_t how_many(const std::vector<std::string> &words, const char *part)
+{
+    return std::count_if(words.begin(), words.end(),
+                         [part](const std::string &text) { return text.find(part) != std::string::npos; });
+}
+
 std::string warning_of(const std::string &description)
 {
     Pipeline pipeline(description);
@@ -268,6 +298,37 @@ TEST(LensSweepSrc, errors_say_what_to_do)
     EXPECT_NE(error("trigger=free-run features=NoSuch=1").find("NoSuch"), std::string::npos);
     EXPECT_NE(error("trigger=free-run sync-line=SYNC").find("trigger=line"), std::string::npos);
     EXPECT_NE(error("trigger=free-run lens-profile=/no/lens.yaml").find("lens=max14574:"), std::string::npos);
+}
+
+TEST(LensSweepSrc, an_error_is_the_only_one)
+{
+    for (const char *properties :
+         {"trigger-source=Line7", "camera=NoSuchCamera", "trigger=free-run near=1 far=2",
+          "trigger=free-run planes=2 rate=0.5 trigger-timeout=50000000",
+          "trigger=free-run ! video/x-raw,width=9999"}) {
+        const auto words =
+            words_of_failure(std::string("lenssweepsrc camera=Fake_1 ") + properties + " ! fakesink");
+        EXPECT_EQ(how_many(words, "error: "), 1) << properties << ": " << words.back();
+    }
+}
+
+TEST(LensSweepSrc, after_an_error_the_next_start_can_fail_and_say_so_again)
+{
+    Pipeline pipeline("lenssweepsrc camera=NoSuchCamera ! fakesink");
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline.get());
+    for (int i = 0; i < 2; i++) {
+        EXPECT_EQ(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+        g_autoptr(GstMessage) error = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+        EXPECT_NE(error, nullptr);
+        pipeline.set_state(GST_STATE_NULL);
+    }
+}
+
+TEST(LensSweepSrc, frames_that_come_and_get_no_plane_are_warned_of)
+{
+    const auto words =
+        words_of_failure("lenssweepsrc camera=Fake_1 trigger=software planes=2 rate=4 ! fakesink");
+    EXPECT_EQ(how_many(words, "The planes of the last 40 frames cannot be told"), 1);
 }
 
 TEST(LensSweepSrc, an_exposure_longer_than_the_period_is_warned_of_with_the_figures)
