@@ -2,6 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/alignment_calibration.h"
 
+#include "optics/settings_file.h"
+
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -9,53 +12,40 @@ namespace dff {
 
 namespace {
 
-[[noreturn]] void fail(const std::string &file, const std::string &what)
-{
-    throw std::runtime_error("The calibration " + file + " cannot be used: " + what);
-}
+constexpr unsigned largest_side = 1 << 16;
+constexpr unsigned most_planes = 64;
+constexpr Range pixels{-65536.0, 65536.0};
+constexpr Range zoom{0.1, 10.0};
+constexpr Range degrees{-360.0, 360.0};
 
-double number(const std::string &file, const cv::FileNode &parent, const char *name)
+PlaneWarp warp_of(const FileEntries &plane)
 {
-    const cv::FileNode node = parent[name];
-    if (!node.isReal() && !node.isInt())
-        fail(file, std::string(name) + " is missing");
-    return static_cast<double>(node);
+    const double scale = plane.number("scale", zoom);
+    const double angle = plane.number("rotation", degrees) * std::numbers::pi / 180.0;
+    return {scale * std::cos(angle), scale * std::sin(angle), plane.number("dx", pixels),
+            plane.number("dy", pixels)};
 }
 
 } // namespace
 
 AlignmentCalibration AlignmentCalibration::load(const std::string &file)
 {
+    const FileEntries entries("The alignment calibration", file);
     AlignmentCalibration calibration;
     calibration.file_ = file;
-    try {
-        const cv::FileStorage storage(file, cv::FileStorage::READ);
-        if (!storage.isOpened())
-            fail(file, "it cannot be opened");
-        const cv::FileNode root = storage.root();
-        calibration.size_ = {static_cast<int>(number(file, root, "image_width")),
-                             static_cast<int>(number(file, root, "image_height"))};
-        for (const cv::FileNode &plane : root["planes"]) {
-            const double scale = number(file, plane, "scale");
-            const double angle = number(file, plane, "rotation") * std::numbers::pi / 180.0;
-            calibration.warps_.push_back({scale * std::cos(angle), scale * std::sin(angle),
-                                          number(file, plane, "dx"), number(file, plane, "dy")});
-            if (!(scale > 0.0))
-                fail(file, "scale is not positive");
-        }
-    } catch (const cv::Exception &error) {
-        fail(file, error.err);
-    }
-    if (calibration.size_.empty() || calibration.warps_.empty())
-        fail(file, "it has no planes or no image size");
+    calibration.size_ = {static_cast<int>(entries.whole_number("image_width", 1, largest_side)),
+                         static_cast<int>(entries.whole_number("image_height", 1, largest_side))};
+    for (const FileEntries &plane : entries.list("planes", most_planes))
+        calibration.warps_.push_back(warp_of(plane));
     return calibration;
 }
 
 std::vector<PlaneAlignment> AlignmentCalibration::alignments(cv::Size size, unsigned planes) const
 {
     if (planes != warps_.size())
-        fail(file_, "it has " + std::to_string(warps_.size()) + " planes and the stack has " +
-                        std::to_string(planes));
+        throw std::runtime_error("The alignment calibration " + file_ + " cannot be used: it has " +
+                                 std::to_string(warps_.size()) + " planes and the stack has " +
+                                 std::to_string(planes));
     std::vector<PlaneAlignment> result;
     for (PlaneWarp warp : warps_) {
         warp.dx *= static_cast<double>(size.width) / size_.width;

@@ -8,12 +8,14 @@
 
 namespace dff {
 
-/* The warp of each plane of a rig whose planes always lie the same, from a YAML file (OpenCV's FileStorage):
+/* The warp of each plane of a rig whose planes always lie the same, from a file (optics/settings_file.h):
  *
  *   image_width, image_height  the size that dx and dy are for, in pixels
  *   planes                     a list, nearest plane first, of
  *     dx, dy                   where the centre of the middle plane's picture lies in this plane, in pixels
- * right and down of its centre scale                    its zoom about the centre rotation degrees, clockwise
+ *                              right and down of its centre
+ *     scale                    its zoom about the centre, 0.1 to 10
+ *     rotation                 degrees, clockwise
  *
  * which are what `stats` of focalstackalign tells after mode=estimate. */
 class AlignmentCalibration {

@@ -2,96 +2,77 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "display_calibration.h"
 
+#include "light_field_settings.h"
+#include "optics/settings_file.h"
+
 #include <cmath>
 #include <numbers>
-#include <opencv2/core.hpp>
-#include <stdexcept>
 
 namespace dff {
 
 namespace {
 
-cv::FileStorage open(const std::string &path)
-{
-    cv::FileStorage file;
-    try {
-        file.open(path, cv::FileStorage::READ);
-    } catch (const cv::Exception &error) {
-        throw std::runtime_error("The display calibration \"" + path +
-                                 "\" is neither JSON nor YAML: " + error.err);
-    }
-    if (!file.isOpened())
-        throw std::runtime_error(
-            "The display calibration \"" + path +
-            "\" cannot be read; display-calibration must be the path of a JSON or YAML file");
-    return file;
-}
+constexpr Range flag{0.0, 1.0};
 
 /* The number in a field, which may be that of a map's `value`. */
-class Fields {
-public:
-    explicit Fields(const std::string &path) : path_(path), file_(open(path)) {}
+double number(const FileEntries &fields, const char *name, Range range)
+{
+    return fields.has_entries(name) ? fields.entries(name).number("value", range)
+                                    : fields.number(name, range);
+}
 
-    double number(const char *name) const
-    {
-        const cv::FileNode node = find(name);
-        if (!node.isInt() && !node.isReal())
-            throw std::runtime_error("The display calibration \"" + path_ + "\" has no number \"" + name +
-                                     "\"");
-        return node.real();
-    }
+double number_or(const FileEntries &fields, const char *name, double otherwise, Range range)
+{
+    return fields.has(name) ? number(fields, name, range) : otherwise;
+}
 
-    double positive(const char *name) const
-    {
-        const double value = number(name);
-        if (!(value > 0.0) || !std::isfinite(value))
-            throw std::runtime_error("\"" + std::string(name) + "\" in the display calibration \"" + path_ +
-                                     "\" must be greater than 0");
-        return value;
-    }
+/* Pixels a side of the panel, of which there is at least one. */
+uint32_t side(const FileEntries &fields, const char *name)
+{
+    return static_cast<uint32_t>(number(fields, name, {1.0, largest_output_side}));
+}
 
-    double number_or(const char *name, double otherwise) const
-    {
-        return find(name).empty() ? otherwise : number(name);
-    }
+/* Rise by run of the lenses; in both directions, but not level. */
+double slope_of(const FileEntries &fields)
+{
+    constexpr double least = 0.01;
+    const double slope = number(fields, "slope", {-1e6, 1e6});
+    if (std::abs(slope) < least)
+        fields.fail("slope is nearly 0: it must be at least 0.01, or at most -0.01");
+    return slope;
+}
 
-    bool is_set(const char *name) const { return number_or(name, 0.0) != 0.0; }
-
-private:
-    cv::FileNode find(const char *name) const
-    {
-        const cv::FileNode node = file_[name];
-        return node.isMap() ? node["value"] : node;
-    }
-
-    std::string path_;
-    cv::FileStorage file_;
-};
+/* Lenses along the width and, as they lean, along the height; there cannot be more than subpixels. */
+void check_lenses(const FileEntries &fields, const DisplayCalibration &calibration)
+{
+    const double along_width = calibration.sheet.pitch;
+    const double along_height = std::abs(calibration.sheet.tilt) * along_width;
+    if (along_width > 3.0 * calibration.panel.width || along_height > 3.0 * calibration.panel.height)
+        fields.fail("pitch, DPI and slope say that a lens is narrower than a subpixel");
+}
 
 } // namespace
 
 DisplayCalibration DisplayCalibration::load(const std::string &path)
 {
-    const Fields fields(path);
-    const double width = fields.positive("screenW"), height = fields.positive("screenH");
-    const double slope = fields.number("slope");
-    if (slope == 0.0 || width > 32768.0 || height > 32768.0)
-        throw std::runtime_error(
-            "The display calibration \"" + path +
-            "\" must have a slope other than 0 and a screen of at most 32768 pixels a side");
+    const FileEntries fields("The display calibration", path);
+    const double slope = slope_of(fields);
 
     DisplayCalibration calibration{};
-    calibration.panel = {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
-    calibration.view_cone = fields.number_or("viewCone", 0.0) * std::numbers::pi / 180.0;
+    calibration.panel = {side(fields, "screenW"), side(fields, "screenH")};
+    const double width = calibration.panel.width, height = calibration.panel.height;
+    calibration.view_cone =
+        number_or(fields, "viewCone", 0.0, {0.0, largest_view_cone}) * std::numbers::pi / 180.0;
     LenticularSheet &sheet = calibration.sheet;
-    sheet.flip_x = fields.is_set("flipImageX");
-    sheet.flip_y = fields.is_set("flipImageY");
-    sheet.flip_subpixels = fields.is_set("flipSubp");
-    sheet.invert_view = fields.is_set("invView");
-    sheet.center = fields.number("center");
-    sheet.pitch =
-        fields.positive("pitch") * width / fields.positive("DPI") * std::cos(std::atan(1.0 / slope));
+    sheet.flip_x = number_or(fields, "flipImageX", 0.0, flag) != 0.0;
+    sheet.flip_y = number_or(fields, "flipImageY", 0.0, flag) != 0.0;
+    sheet.flip_subpixels = number_or(fields, "flipSubp", 0.0, flag) != 0.0;
+    sheet.invert_view = number_or(fields, "invView", 0.0, flag) != 0.0;
+    sheet.center = number(fields, "center", {-1000.0, 1000.0});
+    sheet.pitch = number(fields, "pitch", {0.01, 10000.0}) * width / number(fields, "DPI", {1.0, 10000.0}) *
+                  std::cos(std::atan(1.0 / slope));
     sheet.tilt = height / (width * slope) * (sheet.flip_x ? -1.0 : 1.0);
+    check_lenses(fields, calibration);
     return calibration;
 }
 

@@ -14,10 +14,10 @@ struct DisplayCalibration {
     PictureSize panel;
     double view_cone; /* radians; 0 if the file does not say */
 
-    /* Reads a JSON or YAML file (YAML as OpenCV writes it, with its first line %YAML:1.0) with the fields of
-     * Looking Glass displays, each a number or a map with a number in `value`: screenW and screenH (pixels),
-     * DPI (pixels an inch), pitch (lenses an inch across them), slope (of the lenses: rise by run), center;
-     * and if they are there invView, flipImageX, flipImageY, flipSubp (0 or 1), viewCone (degrees).
+    /* Reads a file (optics/settings_file.h) with the fields of Looking Glass displays, each a number or a map
+     * with a number in `value`: screenW and screenH (pixels), DPI (pixels an inch), pitch (lenses an inch
+     * across them), slope (of the lenses: rise by run), center; and if they are there invView, flipImageX,
+     * flipImageY, flipSubp (0 or 1), viewCone (degrees).
      *
      * pitch = pitch screenW / DPI cos(atan(1 / slope)) lenses along the width,
      * tilt = screenH / (screenW slope), negative if flipImageX.

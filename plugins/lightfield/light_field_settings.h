@@ -9,6 +9,12 @@
 
 namespace dff {
 
+inline constexpr uint32_t largest_picture_side = 8192; /* pixels, of what comes in */
+
+/* Of the picture that a display is given: pixels a side. With 4 bytes a pixel, that is 1 GiB. */
+inline constexpr uint32_t largest_output_side = 16384;
+inline constexpr double largest_view_cone = 120.0; /* degrees */
+
 /* What the user asks of lightfieldcompose. */
 struct LightFieldSettings {
     LightFieldSettings() { parameters.columns = parameters.rows = 0; }

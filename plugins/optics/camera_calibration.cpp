@@ -2,59 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optics/camera_calibration.h"
 
+#include "optics/settings_file.h"
+
 #include <algorithm>
-#include <opencv2/core.hpp>
-#include <stdexcept>
 
 namespace dff {
-
-namespace {
-
-class FileReader {
-public:
-    explicit FileReader(const std::string &file) : file_(file)
-    {
-        try {
-            storage_.open(file, cv::FileStorage::READ);
-        } catch (const cv::Exception &error) {
-            fail(error.err);
-        }
-        if (!storage_.isOpened())
-            fail("it cannot be opened");
-    }
-
-    cv::Mat1d matrix(const char *name) const
-    {
-        cv::Mat values;
-        try {
-            storage_[name] >> values;
-        } catch (const cv::Exception &error) {
-            fail(error.err);
-        }
-        if (values.empty())
-            fail(std::string(name) + " is missing");
-        return values;
-    }
-
-    unsigned size(const char *name) const
-    {
-        const cv::FileNode node = storage_[name];
-        if (!node.isInt() || static_cast<int>(node) <= 0)
-            fail(std::string(name) + " is missing");
-        return static_cast<unsigned>(static_cast<int>(node));
-    }
-
-    [[noreturn]] void fail(const std::string &what) const
-    {
-        throw std::runtime_error("The calibration " + file_ + " cannot be used: " + what);
-    }
-
-private:
-    std::string file_;
-    cv::FileStorage storage_;
-};
-
-} // namespace
 
 CameraCalibration CameraCalibration::scaled_to(unsigned new_width, unsigned new_height) const
 {
@@ -72,28 +24,28 @@ CameraCalibration CameraCalibration::scaled_to(unsigned new_width, unsigned new_
 
 CameraCalibration read_camera_calibration(const std::string &file)
 {
-    const FileReader reader(file);
-    const cv::Mat1d camera = reader.matrix("camera_matrix");
-    const cv::Mat1d distortion = reader.matrix("distortion_coefficients");
-    if (camera.rows != 3 || camera.cols != 3)
-        reader.fail("camera_matrix is not 3 x 3");
+    constexpr unsigned largest_side = 1 << 16;
+    constexpr Range pixels{-1e6, 1e6};
+    constexpr Range focal_length{1e-3, 1e9};
+    const FileEntries entries("The camera calibration", file);
+    const FileEntries::Matrix camera = entries.matrix("camera_matrix", 3, 3);
+    const FileEntries::Matrix distortion = entries.matrix("distortion_coefficients", 14, 14);
+    if (camera.values.size() != 9)
+        entries.fail("camera_matrix is not 3 x 3");
 
     CameraCalibration calibration;
-    calibration.width = reader.size("image_width");
-    calibration.height = reader.size("image_height");
-    calibration.fx = camera(0, 0);
-    calibration.fy = camera(1, 1);
-    calibration.cx = camera(0, 2);
-    calibration.cy = camera(1, 2);
-    if (!(calibration.fx > 0.0) || !(calibration.fy > 0.0))
-        reader.fail("the focal lengths in camera_matrix are not positive");
-    if (distortion.total() > calibration.distortion.size() &&
-        std::any_of(distortion.begin() + calibration.distortion.size(), distortion.end(),
-                    [](double value) { return value != 0.0; }))
-        reader.fail(
+    calibration.width = entries.whole_number("image_width", 1, largest_side);
+    calibration.height = entries.whole_number("image_height", 1, largest_side);
+    calibration.fx = entries.checked(camera.values[0], "camera_matrix[0][0]", focal_length);
+    calibration.fy = entries.checked(camera.values[4], "camera_matrix[1][1]", focal_length);
+    calibration.cx = entries.checked(camera.values[2], "camera_matrix[0][2]", pixels);
+    calibration.cy = entries.checked(camera.values[5], "camera_matrix[1][2]", pixels);
+    const auto known = std::min(distortion.values.size(), calibration.distortion.size());
+    const auto unknown = distortion.values.begin() + static_cast<std::ptrdiff_t>(known);
+    if (std::any_of(unknown, distortion.values.end(), [](double value) { return value != 0.0; }))
+        entries.fail(
             "only the distortion coefficients k1, k2, p1, p2, k3 are known here; calibrate with those");
-    std::copy_n(distortion.begin(), std::min(distortion.total(), calibration.distortion.size()),
-                calibration.distortion.begin());
+    std::copy(distortion.values.begin(), unknown, calibration.distortion.begin());
     return calibration;
 }
 

@@ -25,9 +25,9 @@ struct CameraCalibration {
     bool operator==(const CameraCalibration &) const = default;
 };
 
-/* Reads a file of OpenCV's calibration sample (YAML, XML or JSON: camera_matrix, distortion_coefficients,
- * image_width, image_height). Throws std::runtime_error with a user's text that names the file and what is
- * wrong with it. */
+/* Reads a file of OpenCV's calibration sample (optics/settings_file.h: camera_matrix,
+ * distortion_coefficients, image_width, image_height). Throws std::runtime_error with a user's text that
+ * names the file and what is wrong with it. */
 CameraCalibration read_camera_calibration(const std::string &file);
 
 } // namespace dff

@@ -2,10 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optics/lens_profile.h"
 
+#include "optics/settings_file.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <opencv2/core.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -13,97 +14,42 @@ namespace dff {
 
 namespace {
 
-/* The entries of one file. */
-class Entries {
-public:
-    explicit Entries(const std::string &file) : file_(file)
-    {
-        try {
-            storage_.open(file, cv::FileStorage::READ | cv::FileStorage::FORMAT_YAML);
-        } catch (const cv::Exception &error) {
-            fail(error.err);
-        }
-        if (!storage_.isOpened()) {
-            fail("cannot be read");
-        }
-    }
+constexpr Range dioptres{-1000.0, 1000.0};
+constexpr Range volts_rms{0.0, 1000.0};
+constexpr Range microseconds{0.0, 1e6};
 
-    [[noreturn]] void fail(const std::string &fault) const
-    {
-        throw std::invalid_argument("the lens profile " + file_ + ": " + fault);
-    }
+std::vector<double> rising_numbers(const FileEntries &entries, const char *name, Range range)
+{
+    const std::vector<double> numbers = entries.numbers(name, 2, 1000, range);
+    if (std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) != numbers.end())
+        entries.fail(std::string(name) + " must be numbers, each greater than the one before");
+    return numbers;
+}
 
-    std::string text(const char *name) const
-    {
-        const cv::FileNode node = storage_[name];
-        if (!node.isString()) {
-            fail(std::string(name) + " is missing");
-        }
-        return node.string();
-    }
-
-    double number(const char *name) const
-    {
-        const cv::FileNode node = storage_[name];
-        if (!node.isInt() && !node.isReal()) {
-            fail(std::string(name) + " is missing, or no number");
-        }
-        return node.real();
-    }
-
-    double number(const char *name, double otherwise) const
-    {
-        return storage_[name].empty() ? otherwise : number(name);
-    }
-
-    std::chrono::microseconds microseconds(const char *name, double value) const
-    {
-        if (!(value >= 0 && value <= 1e6)) {
-            fail(std::string(name) + " is not 0 to 1000000");
-        }
-        return std::chrono::microseconds{std::lround(value)};
-    }
-
-    std::vector<double> rising_numbers(const char *name) const
-    {
-        std::vector<double> numbers;
-        for (const cv::FileNode &node : storage_[name]) {
-            numbers.push_back(node.isInt() || node.isReal() ? node.real() : NAN);
-        }
-        const bool finite =
-            std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); });
-        const bool rising =
-            std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) == numbers.end();
-        if (numbers.size() < 2 || !finite || !rising) {
-            fail(std::string(name) + " must be two or more numbers, each greater than the one before");
-        }
-        return numbers;
-    }
-
-private:
-    std::string file_;
-    cv::FileStorage storage_;
-};
+std::chrono::microseconds whole_microseconds(double value)
+{
+    return std::chrono::microseconds{std::lround(value)};
+}
 
 } // namespace
 
 LensProfile LensProfile::load(const std::string &file)
-{
-    const Entries entries(file);
+try {
+    const FileEntries entries("the lens profile", file);
     LensProfile profile;
     profile.lens_ = entries.text("lens");
-    profile.nominal_ = entries.number("nominal") != 0;
-    profile.power_at_infinity_ = entries.number("power_at_infinity");
-    profile.lens_powers_ = entries.rising_numbers("lens_power");
-    profile.volts_ = entries.rising_numbers("volts");
-    if (profile.volts_.size() != profile.lens_powers_.size()) {
+    profile.nominal_ = entries.number("nominal", {0.0, 1.0}) != 0.0;
+    profile.power_at_infinity_ = entries.number("power_at_infinity", dioptres);
+    profile.lens_powers_ = rising_numbers(entries, "lens_power", dioptres);
+    profile.volts_ = rising_numbers(entries, "volts", volts_rms);
+    if (profile.volts_.size() != profile.lens_powers_.size())
         entries.fail("lens_power and volts differ in length");
-    }
-    profile.settle_ = entries.microseconds("settle_us", entries.number("settle_us"));
-    profile.overdrive_ = entries.number("overdrive", 0.0);
-    profile.overdrive_delay_ =
-        entries.microseconds("overdrive_delay_us", entries.number("overdrive_delay_us", 0.0));
+    profile.settle_ = whole_microseconds(entries.number("settle_us", microseconds));
+    profile.overdrive_ = entries.number_or("overdrive", 0.0, {-10.0, 10.0});
+    profile.overdrive_delay_ = whole_microseconds(entries.number_or("overdrive_delay_us", 0.0, microseconds));
     return profile;
+} catch (const std::runtime_error &error) {
+    throw std::invalid_argument(error.what()); /* as of other settings that cannot be used */
 }
 
 double LensProfile::volts(double vergence) const

@@ -8,7 +8,7 @@
 
 namespace dff {
 
-/* What a liquid lens is told to focus at an object vergence, from a YAML file (OpenCV's FileStorage):
+/* What a liquid lens is told to focus at an object vergence, from a file (optics/settings_file.h):
  *
  *   lens                name, for messages
  *   nominal             1: the figures are the maker's for lenses of this type; 0: measured on this lens

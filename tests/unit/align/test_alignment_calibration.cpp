@@ -123,7 +123,17 @@ TEST(AlignmentCalibration, what_is_wrong_with_a_file_is_told)
     expect_refused("/nonexistent.yml", "cannot be opened");
     expect_refused(File("planes:\n  - { dx: 1, dy: 2, rotation: 0 }\n"), "scale is missing");
     expect_refused(File(two_planes, ""), "image_width is missing");
-    expect_refused(File(""), "no planes");
+    expect_refused(File(""), "planes must be a list");
+    const auto plane = [](const std::string &entries) { return "planes:\n  - { " + entries + " }\n"; };
+    expect_refused(File(plane("dx: .nan, dy: 0, scale: 1, rotation: 0")), "planes[0].dx is nan");
+    expect_refused(File(plane("dx: 0, dy: 1e300, scale: 1, rotation: 0")),
+                   "planes[0].dy is 1e+300 and must be");
+    expect_refused(File(plane("dx: 0, dy: 0, scale: 0, rotation: 0")),
+                   "planes[0].scale is 0 and must be 0.1 to 10");
+    expect_refused(File(plane("dx: 0, dy: 0, scale: 1, rotation: .inf")), "planes[0].rotation is inf");
+    expect_refused(File(two_planes, "image_width: 1e9\nimage_height: 120\n"), "image_width is 1000000000");
+    expect_refused(File("planes: 5\n"), "planes must be a list");
+    expect_refused(File("planes: [ 5 ]\n"), "planes[0] has no named entries");
 }
 
 TEST(AlignmentCalibration, what_stats_told_aligns_the_same)

@@ -64,13 +64,37 @@ TEST(Calibration, reads_yaml_with_plain_numbers)
 TEST(Calibration, says_what_is_wrong_with_a_file)
 {
     EXPECT_NE(refusal_of("/nonexistent.json").find("/nonexistent.json"), std::string::npos);
-    EXPECT_NE(refusal_of(write("json", "{\"pitch\": 5,")).find("neither JSON nor YAML"), std::string::npos);
+    EXPECT_NE(refusal_of(write("json", "{\"pitch\": 5,")).find("neither YAML"), std::string::npos);
     EXPECT_NE(refusal_of(write("json", "")).find("display calibration"), std::string::npos);
-    EXPECT_NE(refusal_of(write("json", "{\"screenW\": 1536, \"screenH\": 2048}")).find("\"slope\""),
-              std::string::npos);
-    EXPECT_NE(refusal_of(write("json", "{\"screenW\": 0, \"screenH\": 2048}")).find("\"screenW\""),
-              std::string::npos);
-    EXPECT_NE(refusal_of(write("json", "{\"screenW\": \"wide\", \"screenH\": 2048}")).find("\"screenW\""),
+    EXPECT_NE(refusal_of(write("json", "{\"screenW\": 1536, \"screenH\": 2048}")).find("slope is missing"),
               std::string::npos);
     EXPECT_NE(refusal_of(write("json", "[1, 2]")), "");
+}
+
+TEST(Calibration, what_no_display_has_is_refused_with_the_range)
+{
+    struct Case {
+        const char *from, *to, *reason;
+    };
+    for (const auto &[from, to, reason] : {
+             Case{"1536.0", "0.5", "screenW.value is 0.5 and must be 1 to 16384"},
+             Case{"1536.0", "0", "screenW.value is 0 and must be 1 to 16384"},
+             Case{"2048.0", "32768", "screenH.value is 32768 and must be 1 to 16384"},
+             Case{"2048.0", "\"high\"", "screenH.value is not a number"},
+             Case{"-7.2", "0", "slope is nearly 0"},
+             Case{"-7.2", "1e-300", "slope is nearly 0"},
+             Case{"-7.2", "1e300", "slope.value is 1e+300 and must be"},
+             Case{"52.5", "1e300", "pitch.value is 1e+300 and must be 0.01 to 10000"},
+             Case{"52.5", "0", "pitch.value is 0 and must be 0.01 to 10000"},
+             Case{"52.5", "5000", "a lens is narrower than a subpixel"},
+             Case{"324.0", "1e-300", "DPI.value is 1e-300 and must be 1 to 10000"},
+             Case{"0.25", "1e300", "center.value is 1e+300 and must be"},
+             Case{"35.0", "180", "viewCone.value is 180 and must be 0 to 120"},
+             Case{R"("flipSubp":{"value":0.0})", R"("flipSubp":7)", "flipSubp is 7 and must be 0 to 1"},
+         }) {
+        std::string text = display;
+        const std::string fault =
+            refusal_of(write("json", text.replace(text.find(from), std::string(from).size(), to)));
+        EXPECT_NE(fault.find(reason), std::string::npos) << fault;
+    }
 }

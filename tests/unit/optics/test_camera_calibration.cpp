@@ -21,6 +21,11 @@ std::string distortion(const std::string &count, const std::string &values)
            "\n   cols: 1\n   dt: d\n   data: [ " + values + " ]\n";
 }
 
+std::string with(std::string from, const std::string &part, const std::string &other)
+{
+    return from.replace(from.find(part), part.size(), other);
+}
+
 class CalibrationFile {
 public:
     explicit CalibrationFile(const std::string &text)
@@ -75,6 +80,17 @@ TEST(CameraCalibration, what_is_wrong_with_a_file_is_told)
     expect_refused(size + camera_matrix, "distortion_coefficients is missing");
     expect_refused(camera_matrix + distortion("4", "0, 0, 0, 0"), "image_width is missing");
     expect_refused(size + camera_matrix + distortion("8", "0, 0, 0, 0, 0, 1, 2, 3"), "k1, k2, p1, p2, k3");
+    expect_refused(size + with(camera_matrix, "dt: d", "dt: \"2f\"") + distortion("4", "0, 0, 0, 0"),
+                   "camera_matrix.dt is \"2f\"");
+    expect_refused(size + with(camera_matrix, "cols: 3", "cols: 2") + distortion("4", "0, 0, 0, 0"),
+                   "camera_matrix.data must be a list of 6 numbers");
+    expect_refused(size + with(camera_matrix, "800.", "-800.") + distortion("4", "0, 0, 0, 0"),
+                   "camera_matrix[0][0] is -800 and must be 0.001 to");
+    expect_refused(size + with(camera_matrix, "239.5", "1e300") + distortion("4", "0, 0, 0, 0"),
+                   "camera_matrix[1][2] is 1e+300 and must be");
+    expect_refused(size + camera_matrix + distortion("4", "0, 0, 0, .inf"), "must be finite");
+    expect_refused(with(size, "640", "-640") + camera_matrix + distortion("4", "0, 0, 0, 0"),
+                   "image_width is -640 and must be 1 to 65536");
     expect_refused("camera_matrix: [", "");
     EXPECT_THROW(read_camera_calibration("/nonexistent.yml"), std::runtime_error);
 }

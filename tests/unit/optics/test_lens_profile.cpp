@@ -97,10 +97,16 @@ TEST(LensProfile, faults_of_a_file_are_told_with_its_name)
         fault_of(with(good, "volts: [ 30, 40.0, 50.0 ]", "volts: [ 30, 50.0 ]")).find("differ in length"),
         std::string::npos);
     EXPECT_NE(fault_of(with(good, "lens_power: [ 0, 2.0, 6.0 ]", "lens_power: [ 0, 0, x ]"))
-                  .find("lens_power must"),
+                  .find("lens_power[2] is not a number"),
               std::string::npos);
     EXPECT_NE(fault_of(with(good, "settle_us: 1500", "settle_us: -1")).find("settle_us"), std::string::npos);
     EXPECT_NE(fault_of(with(good, "nominal: 0\n", "")).find("nominal"), std::string::npos);
+    EXPECT_NE(fault_of(with(good, "power_at_infinity: 1.0", "power_at_infinity: 1e300"))
+                  .find("power_at_infinity is 1e+300 and must be -1000 to 1000"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with(good, "50.0", ".inf")).find("volts[2] is inf and must be 0 to 1000"),
+              std::string::npos);
+    EXPECT_NE(fault_of(good + "overdrive: .nan\n").find("overdrive is nan"), std::string::npos);
     EXPECT_NE(fault_of("lens: [ \"never closed\n").find("profile"), std::string::npos);
     EXPECT_THROW(dff::LensProfile::load("/does/not/exist.yaml"), std::invalid_argument);
     EXPECT_THROW(dff::LensProfile::load("/"), std::invalid_argument);
