@@ -13,7 +13,10 @@
  *
  * With the stack on the request pad `stack` the file has more parts: first `all-in-focus`, then `plane00`,
  * `plane01` and so on, nearest first, each with its `focus` in metres, `focusPower` in dioptres, and
- * `expTime` in seconds; the first part has all `focusPowers`. Put a queue on every branch.
+ * `expTime` in seconds; the first part has all `focusPowers`. The pad may be requested and released while the
+ * others stream: a picture whose time has no stack makes a file without planes. Put a queue on every branch.
+ *
+ * Colour, depth and stack of the same running time belong together.
  *
  * ## Example launch line
  * |[

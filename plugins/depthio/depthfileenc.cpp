@@ -8,6 +8,9 @@
 #include <stdexcept>
 #include <string>
 
+GST_DEBUG_CATEGORY(dff_file_encoder_debug);
+#define GST_CAT_DEFAULT dff_file_encoder_debug
+
 namespace {
 
 /* The streaming thread's own. */
@@ -38,13 +41,11 @@ static State &state_of(GstDepthFileEnc *self)
     return *static_cast<GstDepthFileEncPrivate *>(gst_depth_file_enc_get_instance_private(self))->state;
 }
 
-/* The pad of that name, without a reference: pads in use live as long as the element's streaming. */
-static GstAggregatorPad *find_pad(GstDepthFileEnc *self, const char *name)
+/* The pad of that name, or nullptr. */
+static dff::AggregatorPad find_pad(GstDepthFileEnc *self, const char *name)
 {
     GstPad *pad = gst_element_get_static_pad(GST_ELEMENT(self), name);
-    if (pad)
-        gst_object_unref(pad);
-    return pad ? GST_AGGREGATOR_PAD(pad) : nullptr;
+    return dff::AggregatorPad(pad ? GST_AGGREGATOR_PAD(pad) : nullptr);
 }
 
 static std::string size_text(const GstVideoInfo &info)
@@ -69,24 +70,20 @@ static GstFlowReturn push_file(GstDepthFileEnc *self, const dff::FrameSet &frame
     return gst_aggregator_finish_buffer(GST_AGGREGATOR(self), output);
 }
 
-static GstFlowReturn encode(GstDepthFileEnc *self)
+static GstFlowReturn encode(GstDepthFileEnc *self, const dff::MatchedBuffers &buffers)
 {
     const State &state = state_of(self);
-    if (!state.colour || !state.depth)
+    if (!state.colour || !state.depth || (buffers.stack && !state.stack))
         return GST_FLOW_NOT_NEGOTIATED;
-    GstAggregatorPad *stack_pad = find_pad(self, "stack");
-    g_autoptr(GstBuffer) colour = gst_aggregator_pad_pop_buffer(find_pad(self, "color"));
-    g_autoptr(GstBuffer) depth = gst_aggregator_pad_pop_buffer(find_pad(self, "depth"));
-    g_autoptr(GstBuffer) stack = stack_pad ? gst_aggregator_pad_pop_buffer(stack_pad) : nullptr;
+    GST_LOG_OBJECT(self, "%" GST_PTR_FORMAT " with depth%s", buffers.colour.get(),
+                   buffers.stack ? " and its stack" : "");
     try {
         check_sizes(*state.colour, *state.depth, "depth");
-        if (stack_pad) {
-            if (!state.stack)
-                return GST_FLOW_NOT_NEGOTIATED;
+        if (buffers.stack)
             check_sizes(*state.colour, state.stack->frame, "stack");
-        }
-        return push_file(self, {colour, &*state.colour, depth, &*state.depth, state.depth_caps, stack,
-                                state.stack ? &*state.stack : nullptr});
+        return push_file(self,
+                         {buffers.colour.get(), &*state.colour, buffers.depth.get(), &*state.depth,
+                          state.depth_caps, buffers.stack.get(), buffers.stack ? &*state.stack : nullptr});
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, STREAM, ENCODE, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
@@ -96,10 +93,9 @@ static GstFlowReturn encode(GstDepthFileEnc *self)
 static GstFlowReturn aggregate(GstAggregator *aggregator, gboolean)
 {
     auto *self = GST_DEPTH_FILE_ENC(aggregator);
-    std::vector<GstAggregatorPad *> pads{find_pad(self, "color"), find_pad(self, "depth")};
-    if (GstAggregatorPad *stack = find_pad(self, "stack"))
-        pads.push_back(stack);
-    switch (dff::match_inputs(pads)) {
+    const dff::InputPads pads{find_pad(self, "color"), find_pad(self, "depth"), find_pad(self, "stack")};
+    dff::MatchedBuffers buffers;
+    switch (dff::match_inputs(pads, buffers)) {
     case dff::Match::Waiting:
         return GST_AGGREGATOR_FLOW_NEED_DATA;
     case dff::Match::Again:
@@ -109,7 +105,7 @@ static GstFlowReturn aggregate(GstAggregator *aggregator, gboolean)
     case dff::Match::Ready:
         break;
     }
-    return encode(self);
+    return encode(self, buffers);
 }
 
 static bool set_caps(GstDepthFileEnc *self, const char *pad, GstCaps *caps)
@@ -141,11 +137,12 @@ static gboolean sink_event(GstAggregator *aggregator, GstAggregatorPad *pad, Gst
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
         GstCaps *caps = nullptr;
         gst_event_parse_caps(event, &caps);
+        GST_INFO_OBJECT(pad, "caps %" GST_PTR_FORMAT, caps);
         const bool accepted = set_caps(self, GST_PAD_NAME(pad), caps);
         gst_event_unref(event);
         return accepted;
     }
-    if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT && pad == find_pad(self, "color")) {
+    if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT && g_str_equal(GST_PAD_NAME(pad), "color")) {
         const GstSegment *segment = nullptr;
         gst_event_parse_segment(event, &segment);
         if (segment->format == GST_FORMAT_TIME)
@@ -178,7 +175,7 @@ static gboolean start(GstAggregator *aggregator)
 {
     auto *self = GST_DEPTH_FILE_ENC(aggregator);
     for (const char *name : {"color", "depth"})
-        if (!gst_pad_is_linked(GST_PAD(find_pad(self, name)))) {
+        if (!gst_pad_is_linked(GST_PAD(find_pad(self, name).get()))) {
             GST_ELEMENT_ERROR(self, CORE, PAD,
                               ("The pad \"%s\" is not linked: %s needs a picture and its depth", name,
                                GST_OBJECT_NAME(gst_element_get_factory(GST_ELEMENT(self)))),
@@ -224,6 +221,7 @@ static void gst_depth_file_enc_class_init(GstDepthFileEncClass *klass)
 {
     auto *aggregator_class = GST_AGGREGATOR_CLASS(klass);
 
+    GST_DEBUG_CATEGORY_INIT(dff_file_encoder_debug, "depthfileenc", 0, "files of colour and depth");
     G_OBJECT_CLASS(klass)->finalize = finalize;
     aggregator_class->aggregate = aggregate;
     aggregator_class->sink_event = sink_event;

@@ -8,7 +8,7 @@
 
 namespace dff {
 
-/* A picture, its depth and, if that is linked, the stack it was computed from. */
+/* A picture, its depth and, if it came, the stack it was computed from. */
 struct FrameSet {
     GstBuffer *colour;
     const GstVideoInfo *colour_info;
@@ -25,7 +25,8 @@ struct FrameSet {
 G_DECLARE_DERIVABLE_TYPE(GstDepthFileEnc, gst_depth_file_enc, GST, DEPTH_FILE_ENC, GstAggregator)
 
 /* What encoders of colour and depth share: the pads `color` and `depth`, and `stack` where the derived class
- * has a template for it. Frames of equal time belong together. */
+ * has a template for it, which may come and go while the others stream. Frames of equal running time belong
+ * together. */
 struct _GstDepthFileEncClass {
     GstAggregatorClass parent_class;
 

@@ -3,14 +3,37 @@
 #pragma once
 
 #include <gst/base/gstaggregator.h>
-#include <span>
+#include <memory>
+#include <optional>
 
 namespace dff {
 
+struct PadUnref {
+    void operator()(GstAggregatorPad *pad) const { gst_object_unref(pad); }
+};
+using AggregatorPad = std::unique_ptr<GstAggregatorPad, PadUnref>;
+
+struct BufferUnref {
+    void operator()(GstBuffer *buffer) const { gst_buffer_unref(buffer); }
+};
+using OwnedBuffer = std::unique_ptr<GstBuffer, BufferUnref>;
+
+/* The pads whose first buffers belong together where they have the same running time; those without a time go
+ * by their order. `stack` may be missing, and may be released while this looks at it. */
+struct InputPads {
+    AggregatorPad colour, depth, stack;
+};
+
+/* Taken off their pads. */
+struct MatchedBuffers {
+    OwnedBuffer colour, depth;
+    OwnedBuffer stack; /* nullptr where the pad is missing or at its end, or has no stack of this time */
+};
+
 enum class Match { Waiting, Again, Ended, Ready };
 
-/* Whether the first buffers of all pads are of one time. Those whose partner did not come are dropped: Again.
- * Buffers without a time go by their order. */
-Match match_inputs(std::span<GstAggregatorPad *const> pads);
+/* Ready: `buffers` holds the next ones that belong together. A picture without its depth, a depth map without
+ * its picture and a stack without both are dropped, which is told in the log. */
+Match match_inputs(const InputPads &pads, MatchedBuffers &buffers);
 
 } // namespace dff
