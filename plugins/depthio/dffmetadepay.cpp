@@ -31,7 +31,7 @@ namespace {
 
 /* The streaming thread's own. */
 struct State {
-    std::vector<dff::Event> events; /* of the next buffer */
+    dff::PendingMetas metas; /* of the next buffer */
 };
 
 } // namespace
@@ -50,11 +50,13 @@ static gboolean sink_event(GstBaseTransform *transform, GstEvent *event)
 {
     State &state = *GST_DFF_META_DEPAY(transform)->state;
     if (dff::is_meta_event(event)) {
-        state.events.emplace_back(event);
+        GST_LOG_OBJECT(transform, "%" GST_PTR_FORMAT, event);
+        state.metas.add(event);
+        gst_event_unref(event);
         return TRUE;
     }
     if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
-        state.events.clear();
+        state.metas.clear();
     return GST_BASE_TRANSFORM_CLASS(gst_dff_meta_depay_parent_class)->sink_event(transform, event);
 }
 
@@ -67,10 +69,8 @@ static GstFlowReturn prepare_output_buffer(GstBaseTransform *, GstBuffer *input,
 
 static GstFlowReturn transform_ip(GstBaseTransform *transform, GstBuffer *buffer)
 {
-    const std::vector<dff::Event> events = std::move(GST_DFF_META_DEPAY(transform)->state->events);
     try {
-        for (const dff::Event &event : events)
-            dff::add_meta_of_event(buffer, event.get());
+        GST_DFF_META_DEPAY(transform)->state->metas.give_to(buffer);
     } catch (const std::runtime_error &error) {
         GST_ELEMENT_ERROR(transform, STREAM, DECODE, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
@@ -80,7 +80,7 @@ static GstFlowReturn transform_ip(GstBaseTransform *transform, GstBuffer *buffer
 
 static gboolean stop(GstBaseTransform *transform)
 {
-    GST_DFF_META_DEPAY(transform)->state->events.clear();
+    GST_DFF_META_DEPAY(transform)->state->metas.clear();
     return TRUE;
 }
 

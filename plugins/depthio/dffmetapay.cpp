@@ -39,8 +39,10 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(dffmetapay, "dffmetapay", GST_RANK_NONE, G
 
 static GstFlowReturn transform_ip(GstBaseTransform *transform, GstBuffer *buffer)
 {
-    for (dff::Event &event : dff::events_of_metas(buffer))
+    for (dff::Event &event : dff::events_of_metas(buffer)) {
+        GST_LOG_OBJECT(transform, "%" GST_PTR_FORMAT, event.get());
         gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(transform), event.release());
+    }
     return GST_FLOW_OK;
 }
 

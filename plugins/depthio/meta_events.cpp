@@ -2,13 +2,18 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depthio/meta_events.h"
 
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace dff {
 
 namespace {
 
 constexpr const char *event_name = "GstDffMeta";
+constexpr gsize most_bytes = 16384; /* a stack of 64 planes has a quarter of it */
+constexpr size_t most_clocks = 8;
+constexpr size_t longest_clock = 1024;
 
 Event event_of(GstStructure *structure)
 {
@@ -17,8 +22,8 @@ Event event_of(GstStructure *structure)
 
 Event event_of_bytes(const char *kind, GBytes *bytes)
 {
-    g_autoptr(GBytes) owned = bytes;
     g_autoptr(GstBuffer) data = gst_buffer_new_wrapped_bytes(bytes);
+    g_bytes_unref(bytes);
     return event_of(
         gst_structure_new(event_name, "kind", G_TYPE_STRING, kind, "data", GST_TYPE_BUFFER, data, nullptr));
 }
@@ -31,36 +36,14 @@ Event event_of_time(const GstReferenceTimestampMeta *meta)
                                       G_TYPE_UINT64, meta->duration, nullptr));
 }
 
-void add_time(GstBuffer *buffer, const GstStructure *structure)
-{
-    const gchar *clock = gst_structure_get_string(structure, "clock");
-    g_autoptr(GstCaps) reference = clock ? gst_caps_from_string(clock) : nullptr;
-    GstClockTime timestamp = 0, duration = 0;
-    if (!reference || !gst_structure_get_uint64(structure, "timestamp", &timestamp) ||
-        !gst_structure_get_uint64(structure, "duration", &duration))
-        throw std::runtime_error("A recorded reference timestamp is damaged");
-    if (GstReferenceTimestampMeta *old = gst_buffer_get_reference_timestamp_meta(buffer, reference))
-        gst_buffer_remove_meta(buffer, &old->parent);
-    gst_buffer_add_reference_timestamp_meta(buffer, reference, timestamp, duration);
-}
-
-GBytes *bytes_of(const GstStructure *structure)
-{
-    g_autoptr(GstBuffer) data = nullptr;
-    if (!gst_structure_get(structure, "data", GST_TYPE_BUFFER, &data, nullptr) || !data)
-        throw std::runtime_error("A recorded meta has no data");
-    gpointer copy = nullptr;
-    gsize size = 0;
-    gst_buffer_extract_dup(data, 0, gst_buffer_get_size(data), &copy, &size);
-    return g_bytes_new_take(copy, size);
-}
-
 template <typename Meta> using AddFromBytes = Meta *(*)(GstBuffer *, GBytes *, GError **);
 
 template <typename Meta>
-void add(GstBuffer *buffer, const GstStructure *structure, Meta *old, AddFromBytes<Meta> add)
+void add(GstBuffer *buffer, const std::vector<guint8> &data, Meta *old, AddFromBytes<Meta> add)
 {
-    g_autoptr(GBytes) bytes = bytes_of(structure);
+    if (data.empty())
+        return;
+    g_autoptr(GBytes) bytes = g_bytes_new(data.data(), data.size());
     g_autoptr(GError) error = nullptr;
     if (old)
         gst_buffer_remove_meta(buffer, &old->meta);
@@ -95,21 +78,76 @@ bool is_meta_event(GstEvent *event)
     return gst_event_has_name(event, event_name);
 }
 
-void add_meta_of_event(GstBuffer *buffer, GstEvent *event)
+void PendingMetas::add_bytes(size_t kind, const GstStructure *structure)
 {
+    g_autoptr(GstBuffer) data = nullptr;
+    if (!gst_structure_get(structure, "data", GST_TYPE_BUFFER, &data, nullptr) || !data ||
+        gst_buffer_get_size(data) == 0)
+        throw std::runtime_error("A recorded meta has no data");
+    const gsize size = gst_buffer_get_size(data);
+    if (size > most_bytes)
+        throw std::runtime_error("A recorded meta is damaged: it has " + std::to_string(size) + " bytes");
+    bytes_[kind].resize(size);
+    gst_buffer_extract(data, 0, bytes_[kind].data(), size);
+}
+
+void PendingMetas::add_time(const GstStructure *structure)
+{
+    const gchar *clock = gst_structure_get_string(structure, "clock");
+    ClockTime time;
+    if (!clock || std::string_view(clock).size() > longest_clock ||
+        !gst_structure_get_uint64(structure, "timestamp", &time.timestamp) ||
+        !gst_structure_get_uint64(structure, "duration", &time.duration))
+        throw std::runtime_error("A recorded reference timestamp is damaged");
+    time.clock = clock;
+    std::erase_if(times_, [&](const ClockTime &old) { return old.clock == time.clock; });
+    if (times_.size() == most_clocks)
+        throw std::runtime_error("A recorded frame has the times of more than " +
+                                 std::to_string(most_clocks) + " clocks");
+    times_.push_back(std::move(time));
+}
+
+void PendingMetas::add(GstEvent *event)
+{
+    static constexpr const char *kinds[] = {"focus", "stack", "depth"};
     const GstStructure *structure = gst_event_get_structure(event);
-    const gchar *kind = gst_structure_get_string(structure, "kind");
-    if (g_strcmp0(kind, "focus") == 0)
-        add(buffer, structure, gst_buffer_get_focus_meta(buffer), gst_buffer_add_focus_meta_from_bytes);
-    else if (g_strcmp0(kind, "stack") == 0)
-        add(buffer, structure, gst_buffer_get_focal_stack_meta(buffer),
-            gst_buffer_add_focal_stack_meta_from_bytes);
-    else if (g_strcmp0(kind, "depth") == 0)
-        add(buffer, structure, gst_buffer_get_depth_meta(buffer), gst_buffer_add_depth_meta_from_bytes);
-    else if (g_strcmp0(kind, "time") == 0)
-        add_time(buffer, structure);
-    else
-        throw std::runtime_error("A recorded meta is of a kind that this release does not know");
+    const gchar *name = gst_structure_get_string(structure, "kind");
+    const auto kind =
+        static_cast<size_t>(std::find_if(std::begin(kinds), std::end(kinds),
+                                         [name](const char *known) { return g_strcmp0(name, known) == 0; }) -
+                            std::begin(kinds));
+    try {
+        if (kind < std::size(kinds))
+            add_bytes(kind, structure);
+        else if (g_strcmp0(name, "time") == 0)
+            add_time(structure);
+        else
+            throw std::runtime_error("A recorded meta is of a kind that this release does not know");
+    } catch (const std::runtime_error &error) {
+        if (fault_.empty())
+            fault_ = error.what();
+    }
+}
+
+void PendingMetas::give_to(GstBuffer *buffer)
+{
+    const PendingMetas metas = std::exchange(*this, {});
+    if (!metas.fault_.empty())
+        throw std::runtime_error(metas.fault_);
+    dff::add(buffer, metas.bytes_[0], gst_buffer_get_focus_meta(buffer),
+             gst_buffer_add_focus_meta_from_bytes);
+    dff::add(buffer, metas.bytes_[1], gst_buffer_get_focal_stack_meta(buffer),
+             gst_buffer_add_focal_stack_meta_from_bytes);
+    dff::add(buffer, metas.bytes_[2], gst_buffer_get_depth_meta(buffer),
+             gst_buffer_add_depth_meta_from_bytes);
+    for (const ClockTime &time : metas.times_) {
+        g_autoptr(GstCaps) reference = gst_caps_from_string(time.clock.c_str());
+        if (!reference)
+            throw std::runtime_error("A recorded reference timestamp is damaged");
+        if (GstReferenceTimestampMeta *old = gst_buffer_get_reference_timestamp_meta(buffer, reference))
+            gst_buffer_remove_meta(buffer, &old->parent);
+        gst_buffer_add_reference_timestamp_meta(buffer, reference, time.timestamp, time.duration);
+    }
 }
 
 } // namespace dff

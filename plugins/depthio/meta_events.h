@@ -2,8 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include <array>
 #include <gst/dff/dff.h>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace dff {
@@ -21,8 +23,31 @@ std::vector<Event> events_of_metas(GstBuffer *buffer);
  * bits. */
 bool is_meta_event(GstEvent *event);
 
-/* Gives a writable buffer the meta of an event; one that it has already is replaced. Throws
- * std::runtime_error with a user's text if the event is damaged or from another release. */
-void add_meta_of_event(GstBuffer *buffer, GstEvent *event);
+/* What such events said of the next buffer: at most what one buffer can have, however many come. */
+class PendingMetas {
+public:
+    /* A later event takes the place of an earlier one of its kind, whose buffer was lost. */
+    void add(GstEvent *event);
+
+    /* Gives a writable buffer the metas, in place of those that it has already, and forgets them. Throws
+     * std::runtime_error with a user's text if one of the events was damaged or from another release. */
+    void give_to(GstBuffer *buffer);
+
+    void clear() { *this = {}; }
+
+private:
+    struct ClockTime {
+        std::string clock; /* its caps */
+        GstClockTime timestamp;
+        GstClockTime duration;
+    };
+
+    void add_bytes(size_t kind, const GstStructure *structure);
+    void add_time(const GstStructure *structure);
+
+    std::array<std::vector<guint8>, 3> bytes_; /* focus, stack, depth; empty: none */
+    std::vector<ClockTime> times_;
+    std::string fault_; /* of the first damaged event */
+};
 
 } // namespace dff

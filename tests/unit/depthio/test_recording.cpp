@@ -3,6 +3,7 @@
 #include "depth_frame.h"
 
 #include <cstring>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -175,20 +176,135 @@ TEST(Recording, depth_and_the_camera_clock_keep_their_metas)
     }
 }
 
+namespace {
+
+GstEvent *bytes_event(const char *kind, gsize size, guint8 fill = 0)
+{
+    g_autoptr(GstBuffer) data = gst_buffer_new_allocate(nullptr, size, nullptr);
+    gst_buffer_memset(data, 0, fill, size);
+    return gst_event_new_custom(
+        GST_EVENT_CUSTOM_DOWNSTREAM,
+        gst_structure_new("GstDffMeta", "kind", G_TYPE_STRING, kind, "data", GST_TYPE_BUFFER, data, nullptr));
+}
+
+GstEvent *time_event(const std::string &clock, guint64 timestamp)
+{
+    return gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
+                                gst_structure_new("GstDffMeta", "kind", G_TYPE_STRING, "time", "clock",
+                                                  G_TYPE_STRING, clock.c_str(), "timestamp", G_TYPE_UINT64,
+                                                  timestamp, "duration", G_TYPE_UINT64, guint64{5}, nullptr));
+}
+
+GstFlowReturn push_frame(const Harness &harness)
+{
+    return gst_harness_push(harness.get(),
+                            depth_frame(16, 8, [](unsigned, unsigned) { return 1; }).release());
+}
+
+/* What the harness's element says before it gives up. */
+class Errors {
+public:
+    explicit Errors(const Harness &harness) : element_(harness->element), bus_(gst_bus_new())
+    {
+        gst_element_set_bus(element_, bus_);
+    }
+    ~Errors()
+    {
+        gst_element_set_bus(element_, nullptr);
+        gst_object_unref(bus_);
+    }
+
+    std::string next()
+    {
+        g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus_, GST_MESSAGE_ERROR);
+        g_autoptr(GError) error = nullptr;
+        if (message)
+            gst_message_parse_error(message, &error, nullptr);
+        return error ? error->message : "";
+    }
+
+private:
+    GstElement *element_;
+    GstBus *bus_;
+};
+
+/* Bytes of this process that only it has. */
+size_t memory_in_use()
+{
+    std::ifstream file("/proc/self/statm");
+    size_t size = 0, resident = 0;
+    file >> size >> resident;
+    return resident * static_cast<size_t>(getpagesize());
+}
+
+} // namespace
+
+TEST(Recording, events_without_buffers_do_not_pile_up)
+{
+    const Harness harness = depth_harness("dffmetadepay", 16, 8);
+    const size_t before = memory_in_use();
+    for (const char *kind : {"focus", "stack", "depth", "unknown"})
+        for (guint k = 0; k < 200; k++)
+            gst_harness_push_event(harness.get(), bytes_event(kind, 1 << 20, static_cast<guint8>(k)));
+    for (guint k = 0; k < 20'000; k++)
+        gst_harness_push_event(harness.get(), time_event("timestamp/x-" + std::to_string(k), k));
+    EXPECT_LT(memory_in_use(), before + (64 << 20));
+}
+
+TEST(Recording, metas_of_lost_buffers_give_way_to_the_next_ones)
+{
+    const Harness harness = depth_harness("dffmetadepay", 16, 8);
+    Buffer frame = depth_frame(16, 8, [](unsigned, unsigned) { return 1; });
+    const GstDepthInfo depth = dioptres_from_5_to_1();
+    GstDepthMeta *meta = gst_buffer_add_depth_meta(frame.get(), &depth);
+    for (guint64 k = 0; k < 100; k++) {
+        meta->sequence = k;
+        g_autoptr(GBytes) bytes = gst_depth_meta_to_bytes(meta);
+        g_autoptr(GstBuffer) data = gst_buffer_new_wrapped_bytes(bytes);
+        gst_harness_push_event(
+            harness.get(),
+            gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
+                                 gst_structure_new("GstDffMeta", "kind", G_TYPE_STRING, "depth", "data",
+                                                   GST_TYPE_BUFFER, data, nullptr)));
+        gst_harness_push_event(harness.get(), time_event("timestamp/x-camera", k));
+    }
+    EXPECT_EQ(push_frame(harness), GST_FLOW_OK);
+    const Buffer back(gst_harness_pull(harness.get()));
+    ASSERT_NE(gst_buffer_get_depth_meta(back.get()), nullptr);
+    EXPECT_EQ(gst_buffer_get_depth_meta(back.get())->sequence, 99u);
+    EXPECT_EQ(camera_clock(back.get()), "timestamp/x-camera 99 5");
+    EXPECT_EQ(push_frame(harness), GST_FLOW_OK);
+    const Buffer next(gst_harness_pull(harness.get()));
+    EXPECT_EQ(gst_buffer_get_depth_meta(next.get()), nullptr);
+}
+
+TEST(Recording, more_than_a_frame_can_have_is_an_error)
+{
+    const auto error_after = [](const std::vector<GstEvent *> &events) {
+        const Harness harness = depth_harness("dffmetadepay", 16, 8);
+        Errors errors(harness);
+        for (GstEvent *event : events)
+            gst_harness_push_event(harness.get(), event);
+        EXPECT_EQ(push_frame(harness), GST_FLOW_ERROR);
+        return errors.next();
+    };
+    EXPECT_EQ(error_after({bytes_event("stack", 20'000)}), "A recorded meta is damaged: it has 20000 bytes");
+    EXPECT_EQ(error_after({bytes_event("stack", 0)}), "A recorded meta has no data");
+    EXPECT_EQ(error_after({bytes_event("colour", 10)}),
+              "A recorded meta is of a kind that this release does not know");
+    EXPECT_EQ(error_after({time_event("timestamp/x-" + std::string(2000, 'a'), 1)}),
+              "A recorded reference timestamp is damaged");
+    std::vector<GstEvent *> clocks;
+    for (guint k = 0; k < 9; k++)
+        clocks.push_back(time_event("timestamp/x-" + std::to_string(k), k));
+    EXPECT_EQ(error_after(clocks), "A recorded frame has the times of more than 8 clocks");
+}
+
 TEST(Recording, a_damaged_meta_is_an_error_that_says_so)
 {
     const Harness harness = depth_harness("dffmetadepay", 16, 8);
-    g_autoptr(GstBus) bus = gst_bus_new();
-    gst_element_set_bus(harness->element, bus);
-    g_autoptr(GstBuffer) data = gst_buffer_new_memdup("D\1cut", 5);
-    gst_harness_push_event(
-        harness.get(), gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM,
-                                            gst_structure_new("GstDffMeta", "kind", G_TYPE_STRING, "depth",
-                                                              "data", GST_TYPE_BUFFER, data, nullptr)));
-    EXPECT_EQ(
-        gst_harness_push(harness.get(), depth_frame(16, 8, [](unsigned, unsigned) { return 1; }).release()),
-        GST_FLOW_ERROR);
-    g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
-    EXPECT_NE(message, nullptr);
-    gst_element_set_bus(harness->element, nullptr);
+    Errors errors(harness);
+    gst_harness_push_event(harness.get(), bytes_event("depth", 5, 'D'));
+    EXPECT_EQ(push_frame(harness), GST_FLOW_ERROR);
+    EXPECT_NE(errors.next(), "");
 }
