@@ -4,8 +4,10 @@
 
 #include "gstcl/mapped_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace dff {
 
@@ -31,6 +33,14 @@ PictureSize size_of(const GstVideoInfo &info)
             static_cast<uint32_t>(GST_VIDEO_INFO_HEIGHT(&info))};
 }
 
+void require_at_most(PictureSize size, uint32_t side, const std::string &who)
+{
+    if (std::max(size.width, size.height) > side)
+        throw std::runtime_error(who + " " + std::to_string(size.width) + "x" + std::to_string(size.height) +
+                                 " pixels, and the limit is " + std::to_string(side) + "x" +
+                                 std::to_string(side));
+}
+
 DepthUnit unit_of(GstDepthUnit unit)
 {
     switch (unit) {
@@ -50,6 +60,7 @@ DepthUnit unit_of(GstDepthUnit unit)
 void LightFieldPicture::stop()
 {
     renderer_.reset();
+    converter_.stop();
     device_.reset();
     pool_.stop();
     color_ = depth_ = output_ = {};
@@ -58,6 +69,7 @@ void LightFieldPicture::stop()
 
 void LightFieldPicture::set_color(const GstVideoInfo &color)
 {
+    require_at_most(size_of(color), largest_picture_side, "The colour picture has");
     color_ = color;
     renderer_.reset();
     no_depth_.assign(static_cast<size_t>(size_of(color).width) * size_of(color).height, 0);
@@ -71,7 +83,9 @@ void LightFieldPicture::set_depth(const GstVideoInfo &depth, const GstDepthInfo 
 
 void LightFieldPicture::set_output(const GstVideoInfo &output)
 {
+    require_at_most(size_of(output), largest_output_side, "What comes after lightfieldcompose wants");
     output_ = output;
+    converter_.start(color_, GST_VIDEO_INFO_FORMAT(&output));
     renderer_.reset();
     pool_.start(output);
 }
@@ -93,12 +107,12 @@ void LightFieldPicture::ensure_renderer()
         return;
     LightFieldParameters parameters = plan().parameters;
     if (settings_.zero_parallax_dioptre >= 0.0)
-        parameters.zero_parallax =
-            sweep_position(facts_, settings_.zero_parallax_dioptre).value_or(parameters.zero_parallax);
+        if (const auto position = sweep_position(facts_, settings_.zero_parallax_dioptre))
+            parameters.zero_parallax = std::clamp(*position, -4.0, 5.0); /* far away, but still rendered */
     if (renderer_) {
         renderer_->set_parameters(parameters);
     } else {
-        const LightFieldShape shape{pixel_format(GST_VIDEO_INFO_FORMAT(&color_)), size_of(color_),
+        const LightFieldShape shape{pixel_format(GST_VIDEO_INFO_FORMAT(&output_)), size_of(color_),
                                     size_of(output_)};
         translate_errors(
             *device_, [&] { renderer_ = std::make_unique<LightFieldRenderer>(device_, shape, parameters); });
@@ -113,7 +127,7 @@ void LightFieldPicture::read_facts(GstBuffer *depth)
     if (const GstDepthMeta *meta = gst_buffer_get_depth_meta(depth))
         gst_depth_meta_get_depth(meta, &info);
     DepthFacts facts{{unit_of(info.unit), info.scale, info.offset}, 0.0, 0.0};
-    if (info.near > info.far) { /* false for NAN */
+    if (info.near > info.far && std::isfinite(info.near - info.far)) { /* false for NAN */
         facts.near = info.near;
         facts.far = info.far;
     }
@@ -127,7 +141,7 @@ void LightFieldPicture::read_facts(GstBuffer *depth)
 
 void LightFieldPicture::render(GstBuffer *color, GstBuffer *depth, GstBuffer *picture)
 {
-    const MappedFrame colors(color_, color, GST_MAP_READ);
+    const MappedFrame colors(converter_.info(), converter_.convert(color), GST_MAP_READ);
     const MappedFrame output(output_, picture, GST_MAP_WRITE);
     if (depth) {
         const MappedFrame depths(depth_, depth, GST_MAP_READ);

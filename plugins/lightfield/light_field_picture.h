@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "color_converter.h"
 #include "engine/light_field_renderer.h"
 #include "gstcl/picture_pool.h"
 #include "light_field_settings.h"
@@ -20,7 +21,8 @@ public:
     void start(std::shared_ptr<Device> device) { device_ = std::move(device); }
     void stop();
 
-    /* The caps of what comes from here on, and of what is wanted. */
+    /* The caps of what comes from here on, and of what is wanted, in any format of 8-bit RGB. set_color and
+     * set_output throw std::runtime_error with a user's text if they are too large. */
     void set_color(const GstVideoInfo &color);
     void set_depth(const GstVideoInfo &depth, const GstDepthInfo &facts);
     void set_output(const GstVideoInfo &output);
@@ -46,6 +48,7 @@ private:
     LightFieldSettings settings_;
     bool settings_changed_ = true;
     GstVideoInfo color_{}, depth_{}, output_{};
+    ColorConverter converter_; /* to the format of the output */
     GstDepthInfo caps_facts_{};
     DepthFacts facts_;
     PicturePool pool_;

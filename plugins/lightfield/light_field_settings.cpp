@@ -28,6 +28,16 @@ PictureSize quilt_size(const LightFieldParameters &parameters, PictureSize pictu
     return {even(height * aspect) * parameters.columns, even(height) * parameters.rows};
 }
 
+/* Lenses so near to the panel that rays lie nearly flat have no picture. */
+void check_gap(const LensArray &lenses)
+{
+    const double least = lenses.pitch / 16.0;
+    if (lenses.gap > 0.0 && lenses.gap < least)
+        throw std::runtime_error(
+            "gap is " + std::to_string(lenses.gap) +
+            " pixels and must be 0, or at least a sixteenth of pitch: " + std::to_string(least));
+}
+
 } // namespace
 
 LightFieldPlan::LightFieldPlan(const LightFieldSettings &settings, PictureSize picture)
@@ -51,6 +61,8 @@ LightFieldPlan::LightFieldPlan(const LightFieldSettings &settings, PictureSize p
         cone = cone > 0.0 ? cone : calibration.view_cone;
     } else if (layout == LightFieldLayout::Rgbd) {
         output.width *= 2;
+    } else if (layout == LightFieldLayout::Elemental) {
+        check_gap(parameters.lenses);
     } else if (is_quilt) {
         output = settings.quilt.width ? settings.quilt : quilt_size(parameters, picture);
     } else if (layout == LightFieldLayout::Views) {

@@ -10,8 +10,9 @@
  * depth. Near surfaces hide far ones, and what a view sees behind an edge is filled from the background.
  *
  * Colour and depth are matched by their running time; without timestamps the first goes with the first, and
- * so on. A picture without depth comes out flat. Put a queue on every branch, and videoconvert before the
- * colour pad. The OpenCL device is shared with the neighbours, or given by the application: see
+ * so on. A picture without depth comes out flat. Put a queue on every branch. Pictures of up to 8192x8192
+ * pixels come in, those that go out may have 16384x16384, in the colours' own format or another that
+ * downstream wants. The OpenCL device is shared with the neighbours, or given by the application: see
  * gst_context_new_dff_device().
  *
  * A quilt for a Looking Glass Portrait, at half its usual size; file-suffix is what players want at the end
@@ -19,7 +20,7 @@
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
  *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
- *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
+ *     aifcompose name=a ! queue ! l.color  d. ! queue ! l.depth \
  *     lightfieldcompose name=l preset=looking-glass-portrait ! video/x-raw,width=1680,height=1680 ! \
  *     videoconvert ! pngenc ! filesink location=shapes_qs8x6a0.75.png
  * ]|
@@ -27,7 +28,7 @@
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
  *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
- *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
+ *     aifcompose name=a ! queue ! l.color  d. ! queue ! l.depth \
  *     lightfieldcompose name=l layout=views columns=2 view-cone=12 \
  *     zero-parallax-dioptre=3 ! fakesink
  * ]|
@@ -35,7 +36,7 @@
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 ! focalstackmux ! tee name=s \
  *     s. ! queue ! dffdepth ! tee name=d  d. ! queue ! a.depth  s. ! queue ! a.stack \
- *     aifcompose name=a ! queue ! videoconvert ! l.color  d. ! queue ! l.depth \
+ *     aifcompose name=a ! queue ! l.color  d. ! queue ! l.depth \
  *     lightfieldcompose name=l layout=elemental pitch=15.5 grid=hex ! fakesink
  * ]|
  */
@@ -52,14 +53,15 @@
 GST_DEBUG_CATEGORY_STATIC(light_field_compose_debug);
 #define GST_CAT_DEFAULT light_field_compose_debug
 
-#define COLOR_CAPS GST_VIDEO_CAPS_MAKE("{ RGBx, BGRx, RGB, BGR }")
+#define RGB_FORMATS "RGBx, BGRx, RGB, BGR"
 
 static GstStaticPadTemplate color_template =
-    GST_STATIC_PAD_TEMPLATE("color", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(COLOR_CAPS));
+    GST_STATIC_PAD_TEMPLATE("color", GST_PAD_SINK, GST_PAD_ALWAYS,
+                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " RGB_FORMATS ", I420, NV12 }")));
 static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
     "depth", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
-static GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(COLOR_CAPS));
+static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " RGB_FORMATS " }")));
 
 namespace {
 
@@ -68,7 +70,8 @@ enum Property : guint { PropertyDevice = dff::light_field_properties_end, Proper
 class State : public dff::DepthComposer {
 public:
     explicit State(GstAggregator *element)
-        : DepthComposer(element, &color_template, &depth_template, "a colour picture and its depth")
+        : DepthComposer(element, &color_template, &depth_template, "a colour picture and its depth"),
+          element_(element)
     {
     }
 
@@ -94,6 +97,8 @@ private:
     }
     GstBuffer *compose(GstBuffer *color, GstBuffer *depth) override;
     void apply_settings();
+
+    GstAggregator *element_; /* which owns this */
 
     /* Under the mutex. */
     dff::LightFieldSettings settings_;
@@ -144,8 +149,14 @@ bool State::set_main_caps(const GstCaps *caps)
     GstVideoInfo info;
     if (!gst_video_info_from_caps(&info, caps))
         return false;
-    picture_.set_color(info);
-    return true;
+    GST_INFO_OBJECT(element_, "colour: %" GST_PTR_FORMAT, caps);
+    try {
+        picture_.set_color(info);
+        return true;
+    } catch (const std::exception &error) {
+        GST_ELEMENT_ERROR(element_, STREAM, FORMAT, ("%s", error.what()), (nullptr));
+        return false;
+    }
 }
 
 bool State::set_depth_caps(const GstCaps *caps)
@@ -154,6 +165,7 @@ bool State::set_depth_caps(const GstCaps *caps)
     GstDepthInfo facts;
     if (!gst_video_info_from_caps(&info, caps))
         return false;
+    GST_INFO_OBJECT(element_, "depth: %" GST_PTR_FORMAT, caps);
     gst_depth_info_init(&facts);
     gst_depth_info_from_caps(&facts, caps);
     picture_.set_depth(info, facts);
@@ -163,6 +175,7 @@ bool State::set_depth_caps(const GstCaps *caps)
 GstBuffer *State::compose(GstBuffer *color, GstBuffer *depth)
 {
     apply_settings();
+    GST_LOG_OBJECT(element_, "%" GST_PTR_FORMAT " with %" GST_PTR_FORMAT, color, depth);
     return picture_.compose(color, depth);
 }
 
@@ -207,14 +220,17 @@ static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator
     return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->aggregate();
 }
 
-/* What the plan makes of the colour's caps. */
+/* What the plan makes of the colour's caps, in any format of RGB; first that of the colour, if it is one. */
 static GstCaps *output_caps(const GstVideoInfo &color, const dff::LightFieldPlan &plan)
 {
-    GstVideoInfo info = color;
-    GST_VIDEO_INFO_WIDTH(&info) = static_cast<gint>(plan.output.width);
-    GST_VIDEO_INFO_HEIGHT(&info) = static_cast<gint>(plan.output.height);
-    GST_VIDEO_INFO_PAR_N(&info) = GST_VIDEO_INFO_PAR_D(&info) = 1;
-    GstCaps *caps = gst_video_info_to_caps(&info);
+    const bool is_rgb = GST_VIDEO_INFO_IS_RGB(&color);
+    g_autofree gchar *text = g_strdup_printf("video/x-raw, format=(string){ %s%s" RGB_FORMATS " }",
+                                             is_rgb ? GST_VIDEO_INFO_NAME(&color) : "", is_rgb ? ", " : "");
+    GstCaps *caps = gst_caps_from_string(text);
+    gst_caps_set_simple(caps, "width", G_TYPE_INT, static_cast<gint>(plan.output.width), "height", G_TYPE_INT,
+                        static_cast<gint>(plan.output.height), "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1,
+                        "framerate", GST_TYPE_FRACTION, GST_VIDEO_INFO_FPS_N(&color),
+                        GST_VIDEO_INFO_FPS_D(&color), nullptr);
     if (plan.any_size)
         gst_caps_set_simple(caps, "width", GST_TYPE_INT_RANGE, 1, G_MAXINT, "height", GST_TYPE_INT_RANGE, 1,
                             G_MAXINT, nullptr);
@@ -229,13 +245,22 @@ static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggr
         return GST_AGGREGATOR_FLOW_NEED_DATA;
     try {
         state.make_plan();
-        g_autoptr(GstCaps) possible = output_caps(state.color(), state.plan());
-        *caps = downstream ? gst_caps_intersect(possible, downstream) : gst_caps_ref(possible);
-        return GST_FLOW_OK;
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(aggregator, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
     }
+    g_autoptr(GstCaps) possible = output_caps(state.color(), state.plan());
+    *caps = downstream ? gst_caps_intersect_full(possible, downstream, GST_CAPS_INTERSECT_FIRST)
+                       : gst_caps_ref(possible);
+    if (!gst_caps_is_empty(*caps))
+        return GST_FLOW_OK;
+    g_autofree gchar *wanted = gst_caps_to_string(downstream);
+    GST_ELEMENT_ERROR(aggregator, CORE, NEGOTIATION,
+                      ("This layout gives pictures of %ux%u pixels in RGBx, BGRx, RGB or BGR, and what comes "
+                       "after takes none of them",
+                       state.plan().output.width, state.plan().output.height),
+                      ("downstream takes %s", wanted));
+    return GST_FLOW_ERROR;
 }
 
 static GstCaps *gst_light_field_compose_fixate_src_caps(GstAggregator *aggregator, GstCaps *caps)
@@ -266,8 +291,14 @@ static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggre
                           (nullptr));
         return FALSE;
     }
-    state.set_output(info);
-    return TRUE;
+    GST_INFO_OBJECT(aggregator, "output: %" GST_PTR_FORMAT, caps);
+    try {
+        state.set_output(info);
+        return TRUE;
+    } catch (const std::exception &error) {
+        GST_ELEMENT_ERROR(aggregator, STREAM, FORMAT, ("%s", error.what()), (nullptr));
+        return FALSE;
+    }
 }
 
 static gboolean gst_light_field_compose_sink_event(GstAggregator *aggregator, GstAggregatorPad *pad,

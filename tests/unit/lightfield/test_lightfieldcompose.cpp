@@ -122,13 +122,77 @@ TEST(LightFieldCompose, every_layout_has_its_size)
     }
 }
 
-TEST(LightFieldCompose, every_format_runs)
+TEST(LightFieldCompose, every_format_becomes_every_other)
 {
-    for (const char *format : {"RGBx", "BGRx", "RGB", "BGR"}) {
-        const dff::Outcome outcome =
-            run(scene(format) + "layout=views ! video/x-raw,format=" + format + " ! fakesink");
-        EXPECT_TRUE(outcome.end_of_stream) << format << outcome.error;
+    for (const char *format : {"RGBx", "BGRx", "RGB", "BGR", "I420", "NV12"})
+        for (const char *wanted : {"RGBx", "BGRx", "RGB", "BGR"})
+            for (const char *layout : {"views", "rgbd"}) {
+                const dff::Outcome outcome = run(scene(format) + "layout=" + layout +
+                                                 " ! video/x-raw,format=" + wanted + " ! fakesink");
+                EXPECT_TRUE(outcome.end_of_stream) << format << " to " << wanted << ": " << outcome.error;
+            }
+}
+
+TEST(LightFieldCompose, colours_keep_their_own_format_where_anything_goes)
+{
+    for (const auto &[format, expected] :
+         {std::pair{"BGR", "BGR"}, std::pair{"BGRx", "BGRx"}, std::pair{"NV12", "RGBx"}}) {
+        TestPipeline pipeline(scene(format) + "layout=views ! appsink name=out sync=false");
+        pipeline.play();
+        g_autoptr(GstSample) sample = pipeline.pull("out");
+        ASSERT_NE(sample, nullptr) << format;
+        const GstVideoInfo info = info_of(sample);
+        EXPECT_STREQ(GST_VIDEO_INFO_NAME(&info), expected);
     }
+}
+
+/* Colours as converted are the same as colours converted before. */
+TEST(LightFieldCompose, i420_and_nv12_show_the_same_colours)
+{
+    for (const char *format : {"I420", "NV12"})
+        for (const char *layout : {"rgbd", "views", "quilt columns=2 rows=2"}) {
+            std::vector<std::vector<guint8>> pictures;
+            for (const char *before : {"", " ! videoconvert dither=none ! video/x-raw,format=RGBx"}) {
+                std::string description = scene(format);
+                const std::string queue = " ! queue ! l.color";
+                description.insert(description.find(queue), before);
+                TestPipeline pipeline(description + "layout=" + layout +
+                                      " ! video/x-raw,format=RGBx ! appsink name=out sync=false");
+                pipeline.play();
+                g_autoptr(GstSample) sample = pipeline.pull("out");
+                ASSERT_NE(sample, nullptr) << format << " " << layout;
+                GstBuffer *buffer = gst_sample_get_buffer(sample);
+                pictures.emplace_back(gst_buffer_get_size(buffer));
+                gst_buffer_extract(buffer, 0, pictures.back().data(), pictures.back().size());
+            }
+            EXPECT_EQ(pictures[0], pictures[1]) << format << " " << layout;
+        }
+}
+
+TEST(LightFieldCompose, sizes_outside_the_limits_are_told_with_the_limit)
+{
+    const auto error_of = [](const std::string &color_size, const std::string &rest) {
+        return run("videotestsrc num-buffers=1 ! video/x-raw,framerate=26/1,format=RGB," + color_size +
+                   " ! queue ! l.color  videotestsrc num-buffers=1 ! video/x-raw,framerate=26/1,"
+                   "format=GRAY16_LE," +
+                   color_size + " ! queue ! l.depth  lightfieldcompose name=l " + rest + " ! fakesink")
+            .error;
+    };
+    const std::string small = "width=32,height=16", wide = "width=8200,height=16",
+                      high = "width=16,height=8193";
+    EXPECT_NE(error_of(wide, "layout=views").find("8200x16 pixels, and the limit is 8192x8192"),
+              std::string::npos);
+    EXPECT_NE(error_of(high, "layout=rgbd").find("16x8193 pixels, and the limit is 8192x8192"),
+              std::string::npos);
+    for (const char *layout : {"quilt", "views", "elemental"})
+        EXPECT_NE(error_of(small, "layout=" + std::string(layout) + " ! video/x-raw,width=20000,height=16")
+                      .find("20000x16 pixels, and the limit is 16384x16384"),
+                  std::string::npos)
+            << layout;
+    EXPECT_NE(error_of(small, "layout=rgbd ! video/x-raw,width=32").find("pictures of 64x16 pixels"),
+              std::string::npos);
+    EXPECT_NE(error_of(small, "layout=elemental gap=1e-300").find("gap is 0.000000 pixels and must be 0, or"),
+              std::string::npos);
 }
 
 TEST(LightFieldCompose, the_suffix_tells_players_the_layout_of_the_quilt)
