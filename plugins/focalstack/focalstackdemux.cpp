@@ -136,7 +136,7 @@ gboolean sink_query(GstPad *pad, GstObject *parent, GstQuery *query)
     switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_CAPS:
         dff::answer_caps_query(query, pad, GST_FOCAL_STACK_DEMUX(parent)->source,
-                               dff::stack_caps_from_frame_caps);
+                               dff::stack_caps_from_frame_caps, dff::Sizes::AsTheyAre);
         return TRUE;
     case GST_QUERY_ALLOCATION:
         gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);

@@ -9,12 +9,16 @@
  * On the pad `sink` the frames come in the order in which they were taken, each with a #GstFocusMeta that
  * says which plane of which sweep it is (lenssweepsrc, lenssweeptag and lenssweeptestsrc write it). On the
  * pads `sink_0`, `sink_1`, ... each source gives the frames of one plane; there no meta is needed, and frames
- * belong together by their metas where they have them, otherwise by their running time.
+ * belong together by their metas where they have them, otherwise by their running time. The pictures of one
+ * sweep must have the same caps; new caps of all sources may begin at any sweep. A flush of one of these pads
+ * leaves the others running. The stream ends when no pad is linked any more whose own stream did not end.
  *
  * A sweep is over when all of its planes are there, or when a third frame of later sweeps has come (two may
  * overtake). What then is missing costs this one stack, or is filled in: see #focalstackmux:on-missing. Every
  * loss is counted in #focalstackmux:stats and posted as a QoS message. A source that numbers its sweeps anew
- * is followed after one sweep or 16 frames. A sweep of which not one frame came is never made up.
+ * is followed after one sweep or 16 frames. A sweep of which not one frame came is never made up. Where no
+ * stack can be made of the frames of 16 sweeps a warning says why. A plane that is filled in before it ever
+ * came has the power that makes the steps between planes even.
  *
  * A stack's time is that of its first exposure's start, its duration reaches to the end of the last exposure.
  *
@@ -29,6 +33,7 @@
  */
 #include "focalstack/focalstackmux.h"
 
+#include "common/checked_properties.h"
 #include "focalstack/focalstackmux_properties.h"
 #include "focalstack/mux_core.h"
 #include "focalstack/stack_caps.h"
@@ -83,11 +88,25 @@ GstFlowReturn chain(GstPad *pad, GstObject *parent, GstBuffer *buffer)
     return GST_FOCAL_STACK_MUX(parent)->state->core.take(input_of(pad), frame.get());
 }
 
+/* Words for what a CAPS query lets pass for their sake. */
+bool accepts_size(GstFocalStackMux *self, GstPad *pad, GstCaps *caps)
+{
+    g_autoptr(GstCaps) usable = dff::caps_through(pad, self->source, dff::frame_caps_from_stack_caps);
+    if (gst_caps_can_intersect(usable, caps))
+        return true;
+    const std::string limits = dff::describe_sizes(usable);
+    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
+                      ("Pictures of %s pixels cannot become stacks: %s can.",
+                       dff::describe_sizes(caps).c_str(), limits.c_str()),
+                      ("Put videoscale or videocrop before this element."));
+    return false;
+}
+
 gboolean take_caps(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
 {
     GstCaps *caps = nullptr;
     gst_event_parse_caps(event, &caps);
-    const bool taken = self->state->core.set_caps(input, caps);
+    const bool taken = accepts_size(self, input.pad, caps) && self->state->core.set_caps(input, caps);
     gst_event_unref(event);
     return taken;
 }
@@ -101,44 +120,31 @@ gboolean take_segment(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *ev
     return TRUE;
 }
 
-/* A pad's own stream begins and ends; the mux's does so with the first and last of them. */
-gboolean begin_stream(GstFocalStackMux *self, dff::MuxInput &input, GstEvent *event)
-{
-    self->state->core.begin(input);
-    if (!input.plane)
-        return gst_pad_push_event(self->source, event);
-    gst_event_unref(event);
-    return TRUE;
-}
-
-gboolean pass_if(GstFocalStackMux *self, bool wanted, GstEvent *event)
-{
-    if (wanted)
-        return gst_pad_push_event(self->source, event);
-    gst_event_unref(event);
-    return TRUE;
-}
-
 gboolean sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
 {
     GstFocalStackMux *self = GST_FOCAL_STACK_MUX(parent);
+    dff::MuxCore &core = self->state->core;
     dff::MuxInput &input = input_of(pad);
 
     switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
-        return begin_stream(self, input, event);
+        core.begin(input, event);
+        return TRUE;
     case GST_EVENT_CAPS:
         return take_caps(self, input, event);
     case GST_EVENT_SEGMENT:
         return take_segment(self, input, event);
     case GST_EVENT_GAP:
-        return self->state->core.pass_gap(input, event);
+        return core.pass_gap(input, event);
     case GST_EVENT_EOS:
-        return pass_if(self, self->state->core.end(input), event);
+        core.end(input, event);
+        return TRUE;
     case GST_EVENT_FLUSH_START:
-        return pass_if(self, self->state->core.begin_flush(input), event);
+        core.begin_flush(input, event);
+        return TRUE;
     case GST_EVENT_FLUSH_STOP:
-        return pass_if(self, self->state->core.end_flush(input), event);
+        core.end_flush(input, event);
+        return TRUE;
     default:
         return gst_pad_event_default(pad, parent, event);
     }
@@ -158,12 +164,7 @@ gboolean source_event(GstPad *pad, GstObject *parent, GstEvent *event)
     const guint32 seqnum = gst_event_get_seqnum(event);
     state.core.begin_seek();
     const gboolean sought = gst_pad_event_default(pad, parent, event);
-    if (state.core.end_seek()) {
-        GstEvent *stop = gst_event_new_flush_stop(TRUE);
-        gst_event_set_seqnum(stop, seqnum);
-        gst_pad_push_event(pad, stop);
-    }
-    state.core.go_on();
+    state.core.end_seek(seqnum);
     return sought;
 }
 
@@ -172,7 +173,7 @@ gboolean sink_query(GstPad *pad, GstObject *parent, GstQuery *query)
     switch (GST_QUERY_TYPE(query)) {
     case GST_QUERY_CAPS:
         dff::answer_caps_query(query, pad, GST_FOCAL_STACK_MUX(parent)->source,
-                               dff::frame_caps_from_stack_caps);
+                               dff::frame_caps_from_stack_caps, dff::Sizes::AnyInNeed);
         return TRUE;
     case GST_QUERY_ALLOCATION:
         /* Every frame is copied: any layout will do, and downstream's buffers are of no use. */
@@ -207,12 +208,36 @@ gboolean source_query(GstPad *pad, GstObject *parent, GstQuery *query)
     }
 }
 
+/* In a thread of its own: the application's must not be blocked by what is downstream. */
+void end_if_due(GstElement *element)
+{
+    const auto end = [](GstElement *mux, gpointer) { GST_FOCAL_STACK_MUX(mux)->state->core.end_if_due(); };
+    if (GST_FOCAL_STACK_MUX(element)->state->core.end_is_due())
+        gst_element_call_async(element, end, nullptr, nullptr);
+}
+
+void on_linked(GstPad *pad, GstPad *, gpointer element)
+{
+    GST_FOCAL_STACK_MUX(element)->state->core.open_input(input_of(pad));
+}
+
+void on_unlinked(GstPad *pad, GstPad *, gpointer element)
+{
+    GST_DEBUG_OBJECT(pad, "unlinked");
+    GST_FOCAL_STACK_MUX(element)->state->core.close_input(input_of(pad));
+    end_if_due(GST_ELEMENT(element));
+}
+
 void add_input(GstFocalStackMux *self, GstPad *pad, std::optional<unsigned> plane)
 {
     gst_pad_set_chain_function(pad, chain);
     gst_pad_set_event_function(pad, sink_event);
     gst_pad_set_query_function(pad, sink_query);
     gst_pad_set_element_private(pad, &self->state->core.add_input(pad, plane));
+    if (plane) {
+        g_signal_connect(pad, "linked", G_CALLBACK(on_linked), self);
+        g_signal_connect(pad, "unlinked", G_CALLBACK(on_unlinked), self);
+    }
     gst_element_add_pad(GST_ELEMENT(self), pad);
 }
 
@@ -250,13 +275,46 @@ GstPad *request_new_pad(GstElement *element, GstPadTemplate *templ, const gchar 
     return pad;
 }
 
+/* Without a parent the pad lets nobody in any more; whoever is in holds its stream lock. */
+void forget_pad(GstElement *element, gpointer pad)
+{
+    dff::MuxCore &core = GST_FOCAL_STACK_MUX(element)->state->core;
+    GST_PAD_STREAM_LOCK(pad);
+    core.remove_input(GST_PAD(pad));
+    GST_PAD_STREAM_UNLOCK(pad);
+    core.end_if_due();
+}
+
+/* The pad's thread may be pushing a stack: where it runs, another one waits for it, not the application's. */
 void release_pad(GstElement *element, GstPad *pad)
 {
-    GstFocalStackMux *self = GST_FOCAL_STACK_MUX(element);
-    self->state->core.close_input(input_of(pad));
-    gst_pad_set_active(pad, FALSE);
-    self->state->core.remove_input(pad);
+    dff::MuxCore &core = GST_FOCAL_STACK_MUX(element)->state->core;
+    const bool running = core.is_running();
+    g_signal_handlers_disconnect_by_data(pad, element);
+    core.release_input(input_of(pad));
+    if (!running)
+        gst_pad_set_active(pad, FALSE);
+    gpointer kept = gst_object_ref(pad);
     gst_element_remove_pad(element, pad);
+    if (running)
+        gst_element_call_async(element, forget_pad, kept, gst_object_unref);
+    else {
+        forget_pad(element, kept);
+        gst_object_unref(kept);
+    }
+}
+
+bool start(GstFocalStackMux *self)
+{
+    if (const auto fault = dff::value_out_of_range(G_OBJECT(self))) {
+        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("The properties cannot be used: %s.", fault->c_str()),
+                          (nullptr));
+        return false;
+    }
+    GST_OBJECT_LOCK(self);
+    const dff::MuxSettings settings = self->state->settings;
+    GST_OBJECT_UNLOCK(self);
+    return self->state->core.start(settings);
 }
 
 GstStateChangeReturn change_state(GstElement *element, GstStateChange transition)
@@ -264,13 +322,8 @@ GstStateChangeReturn change_state(GstElement *element, GstStateChange transition
     GstFocalStackMux *self = GST_FOCAL_STACK_MUX(element);
     dff::MuxCore &core = self->state->core;
 
-    if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
-        GST_OBJECT_LOCK(self);
-        const dff::MuxSettings settings = self->state->settings;
-        GST_OBJECT_UNLOCK(self);
-        if (!core.start(settings))
-            return GST_STATE_CHANGE_FAILURE;
-    }
+    if (transition == GST_STATE_CHANGE_READY_TO_PAUSED && !start(self))
+        return GST_STATE_CHANGE_FAILURE;
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY)
         core.unblock();
     const GstStateChangeReturn changed =

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/focalstackmux_properties.h"
 
+#include "common/checked_properties.h"
+
 namespace dff {
 namespace {
 
@@ -47,9 +49,9 @@ void install_mux_properties(GObjectClass *object_class)
         static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
     g_object_class_install_property(
         object_class, property::Planes,
-        g_param_spec_uint("planes", "Planes",
-                          "Planes a stack, 2 to 64 (0: as the frames' metas or the pads say)", 0,
-                          GST_FOCAL_STACK_MAX_PLANES, 0, settable));
+        checked_at_start(g_param_spec_uint(
+            "planes", "Planes", "Planes a stack, 2 to 64 (0: as the frames' metas or the pads say)", 0,
+            GST_FOCAL_STACK_MAX_PLANES, 0, settable)));
     g_object_class_install_property(
         object_class, property::OnMissing,
         g_param_spec_enum(

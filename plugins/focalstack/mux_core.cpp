@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/mux_core.h"
 
+#include "focalstack/frame_layout.h"
+
 #include <bit>
 #include <utility>
 
@@ -10,41 +12,31 @@ GST_DEBUG_CATEGORY_EXTERN(focalstackmux_debug);
 
 namespace dff {
 
-namespace {
-
-GstClockTime frame_period(const GstVideoInfo &info)
-{
-    const gint numerator = GST_VIDEO_INFO_FPS_N(&info);
-    return numerator > 0 ? gst_util_uint64_scale(GST_SECOND, GST_VIDEO_INFO_FPS_D(&info), numerator) : 0;
-}
-
-GstFocalStackInfo stack_shape(const GstVideoInfo &frame, unsigned planes, unsigned frames_a_stack)
-{
-    GstFocalStackInfo shape{planes, frame};
-    if (frames_a_stack > 1)
-        gst_util_fraction_multiply(frame.fps_n, frame.fps_d, 1, static_cast<gint>(frames_a_stack),
-                                   &shape.frame.fps_n, &shape.frame.fps_d);
-    return shape;
-}
-
-bool same_shape(const GstFocalStackInfo &a, const GstFocalStackInfo &b)
-{
-    return a.planes == b.planes && gst_video_info_is_equal(&a.frame, &b.frame);
-}
-
-} // namespace
-
 MuxInput &MuxCore::add_input(GstPad *pad, std::optional<unsigned> plane)
 {
-    if (plane)
-        gate_.open(*plane);
     return inputs_.add(pad, plane);
+}
+
+void MuxCore::open_input(MuxInput &input)
+{
+    inputs_.reopen(input);
+    if (input.plane)
+        gate_.open(*input.plane);
 }
 
 void MuxCore::close_input(MuxInput &input)
 {
-    if (input.plane)
-        gate_.close(*input.plane);
+    if (!input.plane)
+        return;
+    if (inputs_.is_flushing(input)) /* whose FLUSH_STOP does not come any more */
+        end_flush(input, gst_event_new_flush_stop(TRUE));
+    gate_.close(*input.plane);
+}
+
+void MuxCore::release_input(MuxInput &input)
+{
+    inputs_.release(input);
+    close_input(input);
 }
 
 MuxStatistics MuxCore::statistics() const
@@ -70,13 +62,18 @@ bool MuxCore::start(const MuxSettings &settings)
     const std::lock_guard lock(stream_);
     settings_ = settings;
     counting_ = {};
+    watch_ = {};
     publish();
     output_.restart();
-    own_stream_begun_ = false;
+    running_ = true;
+    stream_begun_ = false;
+    ended_ = false;
+    damage_told_ = false;
     inputs_.reset();
     {
         const std::lock_guard facts(facts_);
         latency_ = 0;
+        flush_ = Flush::None;
         origin_ns_.reset();
     }
     gate_.close_all();
@@ -89,89 +86,153 @@ bool MuxCore::start(const MuxSettings &settings)
 void MuxCore::stop()
 {
     const std::lock_guard lock(stream_);
+    running_ = false;
     maker_.reset();
 }
 
-bool MuxCore::begin_flush(MuxInput &input)
+/* Whether downstream has to be flushed, and is not yet. */
+bool MuxCore::widen_flush(const MuxInput &input, FlushReach reach)
 {
     const std::lock_guard facts(facts_);
-    if (!seeking_ || !input.plane) {
-        gate_.shut();
-        return true;
+    const bool begun = flush_ != Flush::None;
+    if (seeking_ && !begun)
+        origin_ns_.reset(); /* before any input numbers its first new frame */
+    if (seeking_ || reach == FlushReach::Stream)
+        flush_ = Flush::Stream;
+    else if (reach == FlushReach::Downstream && !begun) {
+        flush_ = Flush::Downstream;
+        flushed_for_ = input.plane;
     }
-    gate_.shut(*input.plane);
-    if (std::exchange(flushed_, true))
-        return false;
-    origin_ns_.reset(); /* before any input numbers its first new frame */
-    return true;
+    return !begun && flush_ != Flush::None;
 }
 
-bool MuxCore::end_flush(MuxInput &input)
+void MuxCore::begin_flush(MuxInput &input, GstEvent *flush_start)
 {
-    const std::lock_guard lock(stream_);
-    inputs_.reopen(input);
-    input.numbering = {};
-    gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
-    if (input.plane)
-        gate_.open(*input.plane);
+    bool downstream = true;
+    if (input.plane) {
+        gate_.hold(); /* nobody else begins to push while it is found out who does */
+        const FlushReach reach = inputs_.begin_flush(input);
+        gate_.shut(*input.plane);
+        downstream = widen_flush(input, reach);
+        if (!downstream)
+            gate_.release();
+    } else
+        inputs_.begin_flush(input);
+    GST_DEBUG_OBJECT(input.pad, "flushing %s", downstream ? "with all that follows" : "by itself");
+    if (downstream)
+        output_.push_event(flush_start);
+    else
+        gst_event_unref(flush_start);
+}
+
+/* What of the output this input's FLUSH_STOP ends to flush. */
+MuxCore::Flush MuxCore::narrow_flush(const MuxInput &input)
+{
+    if (!input.plane)
+        return Flush::Stream;
     const std::lock_guard facts(facts_);
-    if (seeking_ && input.plane)
-        return false;
-    start_anew();
-    gate_.let_in();
-    origin_ns_.reset();
-    return true;
+    if (seeking_ || (flush_ == Flush::Downstream && flushed_for_ != input.plane))
+        return Flush::None;
+    if (flush_ == Flush::Stream)
+        origin_ns_.reset();
+    return std::exchange(flush_, Flush::None);
+}
+
+void MuxCore::end_flush(MuxInput &input, GstEvent *flush_stop)
+{
+    input.begin_stream();
+    input.numbering = {};
+    open_input(input);
+    const Flush flush = narrow_flush(input);
+    if (flush == Flush::None) {
+        gst_event_unref(flush_stop);
+        return;
+    }
+    {
+        const std::lock_guard lock(stream_);
+        if (flush == Flush::Stream)
+            start_anew();
+        else
+            output_.resume();
+    }
+    if (flush == Flush::Downstream) { /* the time of the others runs on */
+        GstEvent *in_time = gst_event_new_flush_stop(FALSE);
+        gst_event_set_seqnum(in_time, gst_event_get_seqnum(flush_stop));
+        gst_event_unref(flush_stop);
+        flush_stop = in_time;
+    }
+    output_.push_event(flush_stop);
+    if (input.plane)
+        gate_.release();
 }
 
 void MuxCore::begin_seek()
 {
     const std::lock_guard facts(facts_);
     seeking_ = true;
-    flushed_ = false;
     gate_.hold();
 }
 
-bool MuxCore::end_seek()
+void MuxCore::end_seek(guint32 seqnum)
 {
+    Flush flush = Flush::None;
     {
         const std::lock_guard facts(facts_);
         seeking_ = false;
-        if (!flushed_) /* who pushes may be blocked downstream */
-            return false;
+        flush = std::exchange(flush_, Flush::None);
     }
-    const std::lock_guard lock(stream_);
-    start_anew();
-    return true;
+    if (flush != Flush::None) { /* otherwise who pushes may be blocked downstream */
+        const std::lock_guard lock(stream_);
+        start_anew();
+        GstEvent *stop = gst_event_new_flush_stop(TRUE);
+        gst_event_set_seqnum(stop, seqnum);
+        output_.push_event(stop);
+        gate_.release(); /* that of the first flush */
+    }
+    gate_.release();
 }
 
 void MuxCore::start_anew()
 {
     maker_.reset();
     output_.restart();
+    ended_ = false;
 }
 
-void MuxCore::begin(MuxInput &input)
+void MuxCore::begin(MuxInput &input, GstEvent *stream_start)
 {
+    input.begin_stream();
+    open_input(input);
+    if (input.plane && stream_begun_ && !ended_) { /* without stream_, which others may have for long */
+        gst_event_unref(stream_start);
+        return;
+    }
     const std::lock_guard lock(stream_);
-    gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
-    inputs_.reopen(input);
-    if (!input.plane)
-        finish();
-    else if (!std::exchange(own_stream_begun_, true))
-        output_.begin_own_stream();
+    if (!input.plane) {
+        finish(&input);
+        output_.push_event(stream_start);
+    } else {
+        gst_event_unref(stream_start);
+        if (!stream_begun_ || ended_) {
+            output_.restart();
+            output_.begin_own_stream();
+        }
+    }
+    stream_begun_ = true;
+    ended_ = false;
 }
 
 bool MuxCore::set_caps(MuxInput &input, const GstCaps *caps)
 {
-    input.has_caps = gst_video_info_from_caps(&input.info, caps);
-    return input.has_caps;
+    GST_INFO_OBJECT(input.pad, "caps %" GST_PTR_FORMAT, caps);
+    return inputs_.set_caps(input, caps);
 }
 
 void MuxCore::set_segment(MuxInput &input, const GstSegment &segment, guint32 seqnum)
 {
     if (!input.plane && !gst_segment_is_equal(&input.segment, &segment)) {
         const std::lock_guard lock(stream_);
-        finish();
+        finish(&input);
         output_.set_segment(segment, seqnum);
     }
     gst_segment_copy_into(&segment, &input.segment);
@@ -189,27 +250,49 @@ bool MuxCore::pass_gap(MuxInput &input, GstEvent *gap)
     const GstClockTime period = input.has_caps ? frame_period(input.info) : 0;
     if (GST_CLOCK_TIME_IS_VALID(time.duration) && time.duration > period)
         time.start += time.duration - period;
-    time.start = gst_segment_to_running_time(&input.segment, GST_FORMAT_TIME, time.start);
+    time.start = input.running_time(time.start);
     gate_.arrive(*input.plane, number(input, time));
     return true;
 }
 
-bool MuxCore::end(MuxInput &input)
+void MuxCore::end(MuxInput &input, GstEvent *eos)
 {
+    GST_DEBUG_OBJECT(input.pad, "ended");
+    inputs_.end(input);
     close_input(input);
-    if (!inputs_.end(input))
-        return false;
+    end_if_due(eos, &input);
+}
 
-    const std::lock_guard lock(stream_);
+bool MuxCore::end_is_due() const
+{
+    return running_ && stream_begun_ && !ended_ && inputs_.all_ended();
+}
+
+void MuxCore::end_if_due(GstEvent *eos, const MuxInput *last)
+{
+    if (end_is_due()) {
+        const std::lock_guard lock(stream_);
+        if (end_is_due()) {
+            finish_and_tell(last);
+            ended_ = true;
+            output_.push_event(eos ? eos : gst_event_new_eos());
+            return;
+        }
+    }
+    if (eos)
+        gst_event_unref(eos);
+}
+
+void MuxCore::finish_and_tell(const MuxInput *input)
+{
     const uint64_t dropped = counting_.dropped;
     const uint64_t lost = counting_.lost;
-    finish();
+    finish(input);
     if (counting_.lost > lost || counting_.dropped > dropped)
         GST_ELEMENT_WARNING(
             element_, STREAM, FAILED, ("The stream ended in mid-sweep."),
             ("%" G_GUINT64_FORMAT " planes did not come; %s", counting_.lost - lost,
              counting_.dropped > dropped ? "the stack was dropped" : "the stack was filled up and sent"));
-    return true;
 }
 
 /* The sweep of a frame that comes on a pad of its own plane and has no meta. */
@@ -247,19 +330,20 @@ bool MuxCore::place(MuxInput &input, GstBuffer *buffer, PlaneFrame &frame)
     if (!input.plane)
         return true;
 
-    frame.time.start = gst_segment_to_running_time(&input.segment, GST_FORMAT_TIME, frame.time.start);
+    frame.time.start = input.running_time(frame.time.start);
     frame.focus.plane = *input.plane;
     if (!meta)
         frame.focus.sweep = number(input, frame.time);
     return true;
 }
 
-/* A live source cannot be made to wait: there a sweep waits for later frames only. */
-bool MuxCore::wait_for_others(MuxInput &input, uint64_t sweep)
+/* Nobody gets more than one sweep ahead. Other caps begin only when the others, too, have brought all of the
+ * old ones. A live source cannot be made to wait: there a sweep waits for later frames only. */
+GatePass MuxCore::enter(MuxInput &input, uint64_t sweep)
 {
-    const bool live = input.is_live();
+    const uint64_t lead = std::exchange(input.caps_changed, false) ? 0 : 1;
     gate_.arrive(*input.plane, sweep);
-    return live || gate_.wait(*input.plane);
+    return gate_.enter(*input.plane, input.is_live() ? std::nullopt : std::optional(lead));
 }
 
 GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)
@@ -269,138 +353,37 @@ GstFlowReturn MuxCore::take(MuxInput &input, GstBuffer *buffer)
         return GST_FLOW_NOT_NEGOTIATED;
     if (!place(input, buffer, frame))
         return GST_FLOW_ERROR;
-    if (input.plane && !wait_for_others(input, frame.focus.sweep))
-        return GST_FLOW_FLUSHING;
+    if (!input.plane)
+        return take_placed(input, frame);
 
+    const GatePass pass = enter(input, frame.focus.sweep);
+    if (pass == GatePass::Shut)
+        return GST_FLOW_FLUSHING;
+    if (pass == GatePass::Closed)
+        return GST_FLOW_OK;
+    const GstFlowReturn flow = take_placed(input, frame);
+    gate_.leave();
+    return flow;
+}
+
+GstFlowReturn MuxCore::take_placed(MuxInput &input, PlaneFrame &frame)
+{
     const std::lock_guard lock(stream_);
+    GST_LOG_OBJECT(input.pad, "plane %u of sweep %" G_GUINT64_FORMAT ", %" GST_TIME_FORMAT, frame.focus.plane,
+                   frame.focus.sweep, GST_TIME_ARGS(frame.time.start));
+    if (input.plane) {
+        if (const auto conflict = inputs_.arrive(input, frame.focus.sweep)) {
+            GST_ELEMENT_ERROR(
+                element_, STREAM, FORMAT, ("%s", conflict->c_str()),
+                ("Put videoconvert, videoscale or videorate and one capsfilter before each pad."));
+            return GST_FLOW_ERROR;
+        }
+    }
     counting_.frames++;
     const GstFlowReturn flow = assemble(input, frame);
     publish();
+    warn_of_missing_stacks();
     return flow;
-}
-
-/* Planes a stack, or 0 with the error posted. */
-unsigned MuxCore::planes_for(const MuxInput &input, const GstFocusInfo &focus)
-{
-    unsigned planes = settings_.planes;
-    if (planes == 0)
-        planes = input.plane ? static_cast<unsigned>(std::bit_width(inputs_.linked_planes())) : focus.planes;
-    else if (!input.plane && focus.planes != 0 && focus.planes != planes) {
-        GST_ELEMENT_ERROR(
-            element_, STREAM, FORMAT,
-            ("The frames are of sweeps of %u planes, but planes=%u was asked for.", focus.planes, planes),
-            ("Set planes=0 to go by the frames."));
-        return 0;
-    }
-
-    if (planes < 2 || planes > longest_stack) {
-        GST_ELEMENT_ERROR(element_, STREAM, FORMAT, ("A stack has 2 to 64 planes, not %u.", planes),
-                          ("Set planes, or planes of the element that gives the frames their sweep."));
-        return 0;
-    }
-    return planes;
-}
-
-GstFlowReturn MuxCore::assemble(MuxInput &input, PlaneFrame &frame)
-{
-    const unsigned planes = planes_for(input, frame.focus);
-    if (planes == 0)
-        return GST_FLOW_ERROR;
-    if (frame.focus.plane >= planes) {
-        refuse_damaged(frame, "its plane is not one of the sweep's");
-        return GST_FLOW_OK;
-    }
-    const bool stack_a_frame = input.plane || settings_.window == StackWindow::Rolling;
-    const GstFlowReturn flow = use_shape(stack_shape(input.info, planes, stack_a_frame ? 1 : planes));
-    return flow == GST_FLOW_OK ? put(frame, input.info) : flow;
-}
-
-GstFlowReturn MuxCore::use_shape(const GstFocalStackInfo &shape)
-{
-    if (maker_ && same_shape(maker_->info(), shape))
-        return GST_FLOW_OK;
-    const GstFlowReturn flow = finish();
-    if (flow != GST_FLOW_OK)
-        return flow;
-    if (!inputs_.make_sense(element_, settings_.planes))
-        return GST_FLOW_ERROR;
-    if (!output_.set_shape(shape))
-        return GST_FLOW_NOT_NEGOTIATED;
-
-    const unsigned allowance = inputs_.linked_planes() ? shape.planes - 1 : StackMaker::default_allowance;
-    maker_ = StackMaker::create(settings_.window, shape, settings_.on_missing, allowance, counting_);
-    update_latency(shape);
-    return GST_FLOW_OK;
-}
-
-GstFlowReturn MuxCore::put(PlaneFrame &frame, const GstVideoInfo &info)
-{
-    GstVideoFrame picture;
-    if (!gst_video_frame_map(&picture, &info, frame.buffer, GST_MAP_READ)) {
-        refuse_damaged(frame, "it is shorter than its caps say");
-        return GST_FLOW_OK;
-    }
-    frame.picture = &picture;
-    const bool put = maker_->add(frame);
-    frame.picture = nullptr;
-    gst_video_frame_unmap(&picture);
-    if (!put) {
-        GST_ELEMENT_ERROR(
-            element_, RESOURCE, NO_SPACE_LEFT, ("There is no memory for a focal stack."),
-            ("%" G_GSIZE_FORMAT " bytes a stack", gst_focal_stack_info_get_size(&maker_->info())));
-        return GST_FLOW_ERROR;
-    }
-    return send_outcomes();
-}
-
-void MuxCore::refuse_damaged(const PlaneFrame &frame, const char *why)
-{
-    counting_.damaged++;
-    GST_ELEMENT_WARNING(element_, STREAM, DECODE, ("A damaged frame was left out."),
-                        ("Plane %u of sweep %" G_GUINT64_FORMAT ", %" G_GSIZE_FORMAT " bytes: %s",
-                         frame.focus.plane, frame.focus.sweep, gst_buffer_get_size(frame.buffer), why));
-}
-
-GstFlowReturn MuxCore::send_outcomes()
-{
-    publish();
-    GstFlowReturn flow = GST_FLOW_OK;
-    while (flow == GST_FLOW_OK) {
-        auto outcome = maker_->next_outcome();
-        if (!outcome)
-            break;
-        flow = output_.send(std::move(*outcome), counting_);
-    }
-    return flow;
-}
-
-GstFlowReturn MuxCore::finish()
-{
-    if (!maker_)
-        return GST_FLOW_OK;
-    maker_->finish();
-    const GstFlowReturn flow = send_outcomes();
-    maker_.reset();
-    return flow;
-}
-
-/* A stack is sent when its last frame is there; one to be filled up waits for frames that may have been
- * overtaken. Planes on pads of their own come within one frame period. */
-void MuxCore::update_latency(const GstFocalStackInfo &shape)
-{
-    const GstClockTime stack_period = frame_period(shape.frame);
-    const bool rolling = settings_.window == StackWindow::Rolling;
-    const bool side_by_side = inputs_.linked_planes() != 0;
-    const GstClockTime period = side_by_side || rolling ? stack_period : stack_period / shape.planes;
-    GstClockTime latency = side_by_side ? period : period * (shape.planes - 1);
-    if (settings_.on_missing != OnMissing::Drop && !rolling)
-        latency += side_by_side ? period : period * (StackMaker::default_allowance + 1);
-    {
-        const std::lock_guard lock(facts_);
-        if (latency == std::exchange(latency_, latency))
-            return;
-    }
-    gst_element_post_message(element_, gst_message_new_latency(GST_OBJECT(element_)));
 }
 
 } // namespace dff

@@ -2,6 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/mux_output.h"
 
+GST_DEBUG_CATEGORY_EXTERN(focalstackmux_debug);
+#define GST_CAT_DEFAULT focalstackmux_debug
+
 namespace dff {
 
 void MuxOutput::restart()
@@ -9,6 +12,12 @@ void MuxOutput::restart()
     gst_segment_init(&segment_, GST_FORMAT_TIME);
     seqnum_ = GST_SEQNUM_INVALID;
     has_caps_ = false;
+    segment_due_ = true;
+    discont_ = true;
+}
+
+void MuxOutput::resume()
+{
     segment_due_ = true;
     discont_ = true;
 }
@@ -34,6 +43,7 @@ void MuxOutput::set_segment(const GstSegment &segment, guint32 seqnum)
 bool MuxOutput::set_shape(const GstFocalStackInfo &info)
 {
     g_autoptr(GstCaps) caps = gst_focal_stack_info_to_caps(&info);
+    GST_INFO_OBJECT(element_, "stacks are %" GST_PTR_FORMAT, caps);
     info_ = info;
     has_caps_ = gst_pad_push_event(source_, gst_event_new_caps(caps));
     return has_caps_;
@@ -68,6 +78,11 @@ void MuxOutput::complete_time(GstBuffer *stack) const
 GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
 {
     if (!outcome.stack) {
+        GST_DEBUG_OBJECT(element_,
+                         "a stack or frame of %" GST_TIME_FORMAT " is lost; dropped %" G_GUINT64_FORMAT
+                         ", repeated %" G_GUINT64_FORMAT ", late %" G_GUINT64_FORMAT,
+                         GST_TIME_ARGS(outcome.time.start), statistics.dropped, statistics.repeated,
+                         statistics.late);
         discont_ = true;
         post_loss(outcome.time, statistics);
         return GST_FLOW_OK;
@@ -76,6 +91,11 @@ GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
     if (discont_)
         GST_BUFFER_FLAG_SET(outcome.stack.get(), GST_BUFFER_FLAG_DISCONT);
     discont_ = false;
+    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(outcome.stack.get());
+    GST_DEBUG_OBJECT(element_,
+                     "stack %" G_GUINT64_FORMAT " of %" GST_TIME_FORMAT
+                     ", planes filled in: %#" G_GINT64_MODIFIER "x",
+                     meta->sequence, GST_TIME_ARGS(GST_BUFFER_PTS(outcome.stack.get())), meta->missing);
     send_due_segment();
     return gst_pad_push(source_, outcome.stack.release());
 }

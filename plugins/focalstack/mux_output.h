@@ -17,8 +17,14 @@ public:
     /* The stream begins anew: caps and segment are due before the next stack. */
     void restart();
 
+    /* Downstream was flushed, and the same stream goes on. */
+    void resume();
+
     /* The mux's pads have no common stream: it has one of its own. */
     void begin_own_stream();
+
+    /* What an input's stream began with, or the whole stream ends with; taken over. */
+    bool push_event(GstEvent *event) { return gst_pad_push_event(source_, event); }
 
     /* `seqnum` is that of its event. */
     void set_segment(const GstSegment &segment, guint32 seqnum);

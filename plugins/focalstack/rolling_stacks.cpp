@@ -38,7 +38,7 @@ bool RollingStacks::send_window()
     const uint64_t stale = rolling_.stale();
     const uint64_t fresh = all_planes(planes()) & ~stale;
     if (stale != 0 && on_missing_ == OnMissing::Drop) {
-        drop_stack(window_->span(fresh));
+        drop_stack(window_->span(fresh), stale);
         return true;
     }
 
@@ -57,7 +57,7 @@ bool RollingStacks::send_window()
 void RollingStacks::finish()
 {
     if (window_ && !rolling_.full())
-        drop_stack(window_->span(all_planes(planes())));
+        drop_stack(window_->span(all_planes(planes())), all_planes(planes()) & ~rolling_.held());
 }
 
 } // namespace dff

@@ -21,6 +21,9 @@ public:
     /* `plane` is below `planes`. */
     FrameVerdict add(uint64_t sweep, unsigned plane);
 
+    /* Planes that were there; bit z is plane z. */
+    uint64_t held() const { return held_; }
+
     /* Whether every plane was there once. */
     bool full() const { return held_ == all_planes(planes_); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "focalstack/frame_verdict.h"
+#include "focalstack/mux_statistics.h"
 #include "focalstack/partial_stack.h"
 
 #include <array>
@@ -17,17 +18,6 @@ namespace dff {
 enum class OnMissing { Drop, Hold, Repeat };
 
 enum class StackWindow { Sweep, Rolling };
-
-struct MuxStatistics {
-    uint64_t frames = 0;    /* came in */
-    uint64_t stacks = 0;    /* were sent */
-    uint64_t dropped = 0;   /* stacks that were not sent, for planes missing */
-    uint64_t lost = 0;      /* frames that never came */
-    uint64_t repeated = 0;  /* frames that came twice; the second one is not used */
-    uint64_t late = 0;      /* frames that came when their sweep was over; not used */
-    uint64_t reordered = 0; /* frames that came out of order and were put in their place */
-    uint64_t damaged = 0;   /* frames that could not be read; count as lost too */
-};
 
 /* A stack to send, or, where `stack` is empty, the time of a stack or frame that was lost. */
 struct Outcome {
@@ -64,11 +54,15 @@ protected:
     unsigned planes() const { return pool_.info().planes; }
     void put(PartialStack &stack, const PlaneFrame &frame);
     void refuse(const PlaneFrame &frame, FrameVerdict verdict);
-    void drop_stack(TimeSpan time);
+    void drop_stack(TimeSpan time, uint64_t missing);
     void send(PartialStack &stack, uint64_t filled);
 
     /* Puts the nearest plane of `fresh` into every other one. */
     void fill_from_neighbours(PartialStack &stack, uint64_t fresh) const;
+
+    /* Of a plane that is not fresh, in dioptres: what it was last, or else what the fresh planes make of it.
+     */
+    double power_of(const PartialStack &stack, unsigned plane, uint64_t fresh) const;
 
     StackPool pool_;
     OnMissing on_missing_;

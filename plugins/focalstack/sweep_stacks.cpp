@@ -49,7 +49,7 @@ void SweepStacks::settle()
         if (open)
             finish_stack(open.mapped(), finished->present);
         else
-            drop_stack({});
+            drop_stack({}, all_planes(planes()));
     }
 }
 
@@ -57,7 +57,7 @@ void SweepStacks::finish_stack(PartialStack &stack, uint64_t present)
 {
     const uint64_t missing = all_planes(planes()) & ~present;
     if (missing != 0 && !fill(stack, present)) {
-        drop_stack(stack.span(present));
+        drop_stack(stack.span(present), missing);
         return;
     }
     send(stack, missing);

@@ -49,6 +49,70 @@ TEST(MuxErrors, a_pad_left_out_is_an_error_that_names_it)
     EXPECT_NE(text.find("\"sink_1\" is not linked"), std::string::npos) << text;
 }
 
+TEST(MuxErrors, a_property_out_of_range_is_named_with_the_range)
+{
+    const std::string text = error_of("videotestsrc num-buffers=1 ! focalstackmux planes=100 ! fakesink");
+    EXPECT_NE(text.find("planes=100 is out of range: 0 to 64"), std::string::npos) << text;
+}
+
+class OtherCaps : public testing::TestWithParam<std::pair<const char *, const char *>> {};
+
+TEST_P(OtherCaps, of_one_plane_are_an_error_that_names_both)
+{
+    const auto source = [](const std::string &caps) {
+        return "videotestsrc num-buffers=40 ! capsfilter caps=\"video/x-raw,format=GRAY8" + caps + "\" ! ";
+    };
+    const std::string text = error_of((source(GetParam().first) + "m.sink_0  " + source(GetParam().second) +
+                                       "m.sink_1  focalstackmux name=m ! fakesink")
+                                          .c_str());
+    for (const char *part : {"\"sink_0\" has video/x-raw", "\"sink_1\" has video/x-raw"})
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_NE(text.find("videoconvert"), std::string::npos) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(MuxErrors, OtherCaps,
+                         testing::Values(std::pair(",width=64,height=64", ",width=128,height=64"),
+                                         std::pair(",framerate=30/1", ",framerate=25/1"),
+                                         std::pair(",colorimetry=bt709", ",colorimetry=bt601")));
+
+TEST(MuxErrors, a_size_that_no_stack_has_is_told_with_the_limits)
+{
+    const std::string small =
+        error_of("videotestsrc ! video/x-raw,format=GRAY8,width=32,height=48 ! identity ! "
+                 "focalstackmux ! video/x-focal-stack,width=[64,8192],height=[64,8192] ! fakesink");
+    EXPECT_NE(small.find("32x48"), std::string::npos) << small;
+    EXPECT_NE(small.find("64x64 to 8192x8192"), std::string::npos) << small;
+}
+
+TEST(MuxErrors, a_size_that_comes_late_is_told_with_the_limits)
+{
+    const Owned<GstHarness> harness(gst_harness_new_parse("focalstackmux"));
+    GstBus *bus = gst_bus_new();
+    GstElement *mux = gst_harness_find_element(harness.get(), "focalstackmux");
+    gst_element_set_bus(mux, bus);
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 9000, 64).c_str());
+    const Owned<GstMessage> message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+    ASSERT_TRUE(message);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    EXPECT_STREQ(error->message, "Pictures of 9000x64 pixels cannot become stacks: 1x1 to 8192x8192 can.");
+    gst_element_set_bus(mux, nullptr);
+    gst_object_unref(mux);
+    gst_object_unref(bus);
+}
+
+TEST(MuxErrors, a_scaler_is_still_told_the_size)
+{
+    const std::string source =
+        "videotestsrc num-buffers=2 ! video/x-raw,format=GRAY8,width=32,height=48 ! videoscale ! ";
+    EXPECT_EQ(
+        error_of((source + "m.sink_0 " + source +
+                  "m.sink_1 focalstackmux name=m ! video/x-focal-stack,width=[64,8192],height=[64,8192] ! "
+                  "fakesink")
+                     .c_str()),
+        "");
+}
+
 TEST(MuxErrors, a_single_plane_is_an_error)
 {
     const std::string text = error_of("focalstackmux name=m ! fakesink  videotestsrc ! m.sink_0");

@@ -50,6 +50,17 @@ protected:
         EXPECT_EQ(gst_buffer_n_memory(stack.get()), 1u);
     }
 
+    /* The next warning, or nothing. */
+    std::string warning()
+    {
+        const Owned<GstMessage> message(gst_bus_pop_filtered(bus_, GST_MESSAGE_WARNING));
+        if (!message)
+            return "";
+        g_autoptr(GError) error = nullptr;
+        gst_message_parse_warning(message.get(), &error, nullptr);
+        return error->message;
+    }
+
     void expect_no_stack() { EXPECT_FALSE(pull()); }
     void expect_count(const char *name, uint64_t count) { EXPECT_EQ(count_of(mux_, name), count) << name; }
     void end() { gst_harness_push_event(harness_.get(), gst_event_new_eos()); }
@@ -182,6 +193,64 @@ TEST_F(MuxLosses, repeat_takes_the_neighbouring_plane)
     EXPECT_DOUBLE_EQ(focus.power, 2.0) << "the powers still fall from plane to plane";
     EXPECT_EQ(focus.frame_id, planes + 2u) << "the frame that is shown";
     EXPECT_EQ(GST_BUFFER_PTS(filled.get()), (planes + 1) * frame_duration);
+}
+
+TEST_F(MuxLosses, repeat_in_the_first_sweep_has_the_power_that_the_others_make_plain)
+{
+    for (unsigned lost = 0; lost < planes; lost++) {
+        SCOPED_TRACE(lost);
+        start("focalstackmux on-missing=repeat");
+        for (unsigned z = 0; z < planes; z++)
+            if (z != lost)
+                push(0, z);
+        push_sweep(1, {0, 1, 2, 3});
+        const Owned<GstBuffer> filled = pull();
+        ASSERT_TRUE(filled);
+        GstFocusInfo focus;
+        for (unsigned z = 0; z < planes; z++) {
+            gst_focal_stack_meta_get_focus(gst_buffer_get_focal_stack_meta(filled.get()), z, &focus);
+            EXPECT_NEAR(focus.power, 5.0 - z, 1e-9);
+        }
+        TearDown();
+    }
+    start();
+}
+
+TEST_F(MuxLosses, a_plane_that_never_comes_is_named_once)
+{
+    start();
+    for (uint64_t sweep = 0; sweep < 60; sweep++)
+        push_sweep(sweep, {0, 1, 3});
+    const std::string text = warning();
+    EXPECT_NE(text.find("No stack"), std::string::npos) << text;
+    EXPECT_NE(text.find("never come: 2."), std::string::npos) << text;
+    EXPECT_EQ(warning(), "");
+}
+
+TEST_F(MuxLosses, a_sweep_number_that_stands_still_is_told)
+{
+    start();
+    for (unsigned i = 0; i < 100; i++)
+        push_sweep(7, {0, 1});
+    const std::string text = warning();
+    EXPECT_NE(text.find("the same planes of the same sweep"), std::string::npos) << text;
+}
+
+TEST_F(MuxLosses, rows_without_their_gap_are_named_as_such)
+{
+    start();
+    gst_harness_set_src_caps_str(harness_.get(), frame_caps("RGB", 30, 8).c_str());
+    for (unsigned z = 0; z < planes; z++) {
+        GstBuffer *tight = new_frame(info_, 0, z, planes);
+        gst_buffer_remove_all_memory(tight);
+        gst_buffer_append_memory(tight, gst_allocator_alloc(nullptr, 90 * 8, nullptr));
+        EXPECT_EQ(gst_harness_push(harness_.get(), tight), GST_FLOW_OK);
+    }
+    const std::string text = warning();
+    for (const char *part : {"720 bytes", "736", "rows of 90 bytes", "multiple of 4, 92 bytes"})
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    EXPECT_EQ(warning(), "") << "once";
+    expect_count("damaged", 4);
 }
 
 TEST_F(MuxLosses, late_frame_of_last_sweep_still_fits)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 using dff::FrameNumbering;
+using dff::GatePass;
 using dff::SweepGate;
 using namespace std::chrono_literals;
 
@@ -51,9 +52,9 @@ protected:
         gate.open(1);
     }
 
-    std::future<bool> wait(unsigned plane)
+    std::future<GatePass> wait(unsigned plane, uint64_t lead = 1)
     {
-        return std::async(std::launch::async, [this, plane] { return gate.wait(plane); });
+        return std::async(std::launch::async, [this, plane, lead] { return gate.enter(plane, lead); });
     }
 
     SweepGate gate;
@@ -67,7 +68,7 @@ TEST_F(TwoSources, a_fast_source_waits_for_a_slow_one)
     EXPECT_EQ(fast.wait_for(50ms), std::future_status::timeout);
     gate.arrive(1, 1);
     EXPECT_EQ(fast.wait_for(5s), std::future_status::ready);
-    EXPECT_TRUE(fast.get());
+    EXPECT_EQ(fast.get(), GatePass::Through);
 }
 
 TEST_F(TwoSources, nobody_waits_for_a_source_that_ended)
@@ -76,7 +77,7 @@ TEST_F(TwoSources, nobody_waits_for_a_source_that_ended)
     auto other = wait(0);
     gate.close(1);
     ASSERT_EQ(other.wait_for(5s), std::future_status::ready);
-    EXPECT_TRUE(other.get());
+    EXPECT_EQ(other.get(), GatePass::Through);
 }
 
 TEST_F(TwoSources, shutting_wakes_who_waits)
@@ -85,7 +86,7 @@ TEST_F(TwoSources, shutting_wakes_who_waits)
     auto waiting = wait(0);
     gate.shut();
     ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
-    EXPECT_FALSE(waiting.get());
+    EXPECT_EQ(waiting.get(), GatePass::Shut);
 }
 
 TEST_F(TwoSources, a_source_that_is_taken_away_does_not_wait)
@@ -94,5 +95,60 @@ TEST_F(TwoSources, a_source_that_is_taken_away_does_not_wait)
     auto waiting = wait(0);
     gate.close(0);
     ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
-    EXPECT_FALSE(waiting.get());
+    EXPECT_EQ(waiting.get(), GatePass::Closed);
+}
+
+TEST_F(TwoSources, one_that_is_flushed_does_not_wake_the_other)
+{
+    gate.arrive(0, 5);
+    auto other = wait(0);
+    gate.arrive(1, 2);
+    auto flushed = wait(1);
+    ASSERT_EQ(flushed.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(flushed.get(), GatePass::Through);
+    gate.shut(1);
+    gate.leave();
+    EXPECT_EQ(gate.enter(1, 1), GatePass::Shut);
+    EXPECT_EQ(other.wait_for(50ms), std::future_status::timeout);
+    gate.open(1);
+    gate.arrive(1, 4);
+    ASSERT_EQ(other.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(other.get(), GatePass::Through);
+}
+
+TEST_F(TwoSources, one_is_in_at_a_time)
+{
+    gate.arrive(0, 1);
+    gate.arrive(1, 1);
+    EXPECT_EQ(gate.enter(0, 1), GatePass::Through);
+    auto next = wait(1);
+    EXPECT_EQ(next.wait_for(50ms), std::future_status::timeout);
+    gate.leave();
+    ASSERT_EQ(next.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(next.get(), GatePass::Through);
+}
+
+TEST_F(TwoSources, without_a_lead_both_come_to_the_same_sweep)
+{
+    gate.arrive(0, 3);
+    gate.arrive(1, 2);
+    auto first = wait(0, 0);
+    EXPECT_EQ(first.wait_for(50ms), std::future_status::timeout);
+    gate.arrive(1, 3);
+    ASSERT_EQ(first.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(first.get(), GatePass::Through);
+}
+
+TEST_F(TwoSources, nobody_gets_in_while_it_is_held)
+{
+    gate.arrive(0, 1);
+    gate.arrive(1, 1);
+    gate.hold();
+    gate.hold();
+    auto waiting = wait(0);
+    gate.release();
+    EXPECT_EQ(waiting.wait_for(50ms), std::future_status::timeout);
+    gate.release();
+    ASSERT_EQ(waiting.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(waiting.get(), GatePass::Through);
 }
