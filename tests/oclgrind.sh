@@ -65,7 +65,7 @@ check "sparse depth, entropy and Gaussian for GPUs" test_sparse_depth 'SparseDep
 check "solver for GPUs" test_bilateral_grid '*the_same_engine*'
 check "picture for GPUs, 16 bits, planes, colours" test_aif '*AifFormats*/9:*AifFormats*/17:*AifFormats*/21:*AifFormats*/49'
 check "picture for CPUs, planes, colours, with holes" test_aif '*AifFormats*/2:*AifFormats*/23:*AifFormats*/27:*AifFormats*/35'
-check "sharp picture" test_aif '*SharpFormats*/0:*SharpFormats*/2'
+check "sharp picture, 16 bits, planes, colours" test_sharp_blend '*SharpStacks*/1:*SharpStacks*/3:*SharpStacks*/5:*SharpStacks*/8'
 check "volume at half resolution, 16 bits" test_volume_stages '*/3'
 check "volume at a quarter, planes" test_volume_stages '*/4'
 check "volume at an eighth" test_volume_stages '*/6'

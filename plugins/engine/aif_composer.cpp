@@ -114,10 +114,7 @@ void AifComposer::compose_sharp(const Pictures &pictures, std::span<const RowLay
 {
     if (!sharp_)
         sharp_.emplace(queue_, shape_, encoder_);
-    sharp_->measure(stack_);
-    queue_.begin_stage("compose");
-    for (size_t c = 0; c < components_.size(); c++)
-        sharp_->compose(stack_, c, pictures.depth, pictures.depth_stride, pictures.output, layout[c]);
+    sharp_->run(stack_, pictures.depth, pictures.depth_stride, pictures.output, layout);
 }
 
 void AifComposer::compose_pixels(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend)

@@ -4,53 +4,94 @@
 
 namespace dff {
 
+namespace {
+
+cl_int2 pixels_of(const Component &component)
+{
+    return {
+        {static_cast<cl_int>(component.width / component.channels), static_cast<cl_int>(component.height)}};
+}
+
+} // namespace
+
 SharpBlend::SharpBlend(CommandQueue &queue, const StackShape &shape, const DepthEncoder &encoder)
-    : queue_(queue), shape_(shape), components_(shape.components()), luma_(queue, shape),
-      positions_(queue.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float)))
+    : queue_(queue), shape_(shape), shapes_(shape.width, shape.height),
+      weights_(queue, shape, shapes_, encoder)
 {
-    const char *sample = shape.format == PixelFormat::Gray16 ? " -DSAMPLE=ushort" : " -DSAMPLE=uchar";
-    const Program program(queue.device(), "sharp_blend", Luma::build_options(shape.format) + sample);
-    gradient_ = program.kernel("gradient");
-    box_ = program.kernel("box");
-    compose_sharp_ = program.kernel("compose_sharp");
-    const size_t samples = size_t{shape.width} * shape.height * shape.planes;
-    sharpness_ = queue.allocate(samples * sizeof(cl_ushort));
-    half_boxed_ = queue.allocate(samples * sizeof(cl_ushort));
-    set_encoder(encoder);
+    for (const Component &component : shape.components())
+        pyramids_.push_back(make_pyramid(component, pyramids_.size()));
 }
 
-void SharpBlend::set_encoder(const DepthEncoder &encoder)
+SharpBlend::Pyramid SharpBlend::make_pyramid(const Component &component, size_t index)
 {
-    std::vector<cl_float> positions(DepthScale::max_pixel + 1);
-    for (unsigned pixel = 0; pixel < positions.size(); pixel++)
-        positions[pixel] = static_cast<cl_float>(encoder.decode(static_cast<uint16_t>(pixel)).value_or(-1.0));
-    queue_.commands().enqueueWriteBuffer(positions_, CL_TRUE, 0, positions.size() * sizeof(cl_float),
-                                         positions.data());
+    Pyramid pyramid{component,
+                    static_cast<cl_int>(index * shape_.planes),
+                    component.subsampling == 2 ? size_t{1} : 0,
+                    {},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {},
+                    {}};
+    const Program program(queue_.device(), "sharp_blend",
+                          "-DSAMPLE_BYTES=" + std::to_string(component.sample_bytes) +
+                              " -DCHANNELS=" + std::to_string(component.channels));
+    pyramid.shrink_samples = program.kernel("shrink_samples");
+    pyramid.shrink = program.kernel("shrink");
+    pyramid.blend_top = program.kernel("blend_top");
+    pyramid.blend = program.kernel("blend");
+    pyramid.blend_samples = program.kernel("blend_samples");
+    for (size_t l = pyramid.first + 1; l <= PyramidShape::top; l++) {
+        const size_t cells = shapes_.levels[l].cells() * component.channels;
+        pyramid.planes[l] = queue_.allocate(cells * shape_.planes * sizeof(cl_ushort));
+        pyramid.result[l] = queue_.allocate(cells * sizeof(cl_float));
+    }
+    return pyramid;
 }
 
-void SharpBlend::measure(const StackBuffer &stack)
+void SharpBlend::run(const StackBuffer &stack, const cl::Buffer &depth, size_t depth_stride,
+                     const cl::Buffer &picture, std::span<const RowLayout> layout)
 {
-    const cl::NDRange samples(shape_.width, shape_.height, shape_.planes);
-    const auto width = static_cast<cl_int>(shape_.width), height = static_cast<cl_int>(shape_.height);
-
-    luma_.run(stack);
-    queue_.begin_stage("sharpness");
-    queue_.run(gradient_, samples, luma_.bytes(), luma_.rows(), sharpness_, width, height);
-    queue_.run(box_, samples, sharpness_, half_boxed_, width, height, cl_int{1}, cl_int{0});
-    queue_.run(box_, samples, half_boxed_, sharpness_, width, height, cl_int{0}, cl_int{1});
+    weights_.run(stack, depth, depth_stride);
+    queue_.begin_stage("bands");
+    for (Pyramid &pyramid : pyramids_)
+        shrink(pyramid, stack);
+    queue_.begin_stage("compose");
+    for (size_t c = 0; c < pyramids_.size(); c++)
+        blend(pyramids_[c], stack, picture, layout[c]);
 }
 
-void SharpBlend::compose(const StackBuffer &stack, size_t component, const cl::Buffer &depth,
-                         size_t depth_stride, const cl::Buffer &picture, const RowLayout &picture_rows)
+void SharpBlend::shrink(Pyramid &pyramid, const StackBuffer &stack)
 {
-    const Component &c = components_[component];
-    const cl_int2 component_size{{static_cast<cl_int>(c.width), static_cast<cl_int>(c.height)}};
-    const cl_int2 size{{static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height)}};
-    queue_.run(compose_sharp_, {c.width, c.height}, stack.bytes(), stack.layout(),
-               static_cast<cl_int>(component * shape_.planes), sharpness_, depth, positions_, picture,
-               cl_ulong2{{picture_rows.offset, picture_rows.stride}}, component_size,
-               static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling), size,
-               static_cast<cl_int>(depth_stride), static_cast<cl_int>(shape_.planes));
+    const auto &levels = shapes_.levels;
+    const size_t first = pyramid.first + 1, pictures = size_t{pyramid.component.channels} * shape_.planes;
+    queue_.run(pyramid.shrink_samples, levels[first].blocks(shape_.planes), stack.bytes(), stack.layout(),
+               pyramid.first_row, pixels_of(pyramid.component), pyramid.planes[first], levels[first],
+               static_cast<cl_int>(shape_.planes));
+    for (size_t l = first + 1; l <= PyramidShape::top; l++)
+        queue_.run(pyramid.shrink, levels[l].blocks(pictures), pyramid.planes[l - 1], levels[l - 1],
+                   pyramid.planes[l], levels[l]);
+}
+
+void SharpBlend::blend(Pyramid &pyramid, const StackBuffer &stack, const cl::Buffer &picture,
+                       const RowLayout &layout)
+{
+    constexpr size_t top = PyramidShape::top;
+    const auto &levels = shapes_.levels;
+    const size_t first = pyramid.first + 1, channels = pyramid.component.channels;
+    const auto planes = static_cast<cl_int>(shape_.planes);
+    queue_.run(pyramid.blend_top, levels[top].blocks(channels), pyramid.planes[top], weights_.of_level(top),
+               levels[top], planes, pyramid.result[top]);
+    for (size_t l = top - 1; l >= first; l--)
+        queue_.run(pyramid.blend, levels[l].blocks(channels), pyramid.planes[l], weights_.of_level(l),
+                   levels[l], pyramid.planes[l + 1], pyramid.result[l + 1], levels[l + 1], planes,
+                   pyramid.result[l]);
+    queue_.run(pyramid.blend_samples, levels[pyramid.first].blocks(), stack.bytes(), stack.layout(),
+               pyramid.first_row, pixels_of(pyramid.component), weights_.of_level(1), levels[1],
+               static_cast<cl_int>(pyramid.component.subsampling), pyramid.planes[first],
+               pyramid.result[first], levels[first], planes, picture,
+               cl_ulong2{{layout.offset, layout.stride}});
 }
 
 } // namespace dff

@@ -61,10 +61,17 @@ public:
     const StageTimes *run()
     {
         run_depth();
-        composer_.compose(stack_.view(), {std::as_bytes(std::span(depth_)), stride()},
-                          AifComposer::Blend::Linear, picture_, layout_);
+        compose(AifComposer::Blend::Linear);
         times_.insert(times_.end(), composer_.times().begin(), composer_.times().end());
         return &times_;
+    }
+
+    /* The picture of the last depth. */
+    const StageTimes *compose(AifComposer::Blend blend)
+    {
+        composer_.compose(stack_.view(), {std::as_bytes(std::span(depth_)), stride()}, blend, picture_,
+                          layout_);
+        return &composer_.times();
     }
 
     std::vector<uint16_t> sparse_depth()
@@ -110,6 +117,8 @@ public:
         rows_.push_back({"method=paper and AIF", Row::Kind::Ours, 1, [this] { return paper_.run(); }});
         rows_.push_back({"method=volume", Row::Kind::Ours, 1, [this] { return volume_.run_depth(); }});
         rows_.push_back({"method=volume and AIF", Row::Kind::Ours, 1, [this] { return volume_.run(); }});
+        rows_.push_back({"AIF alone, blend=sharp", Row::Kind::Part, 1,
+                         [this] { return volume_.compose(AifComposer::Blend::Sharp); }});
         if (c.with_others)
             add_others();
     }

@@ -14,7 +14,7 @@ double median(std::vector<double> values);
 
 /* Something that is timed: the whole of it, and its stages where it has some; all in ms. */
 struct Row {
-    enum class Kind { Copy, Ours, Others };
+    enum class Kind { Copy, Ours, Part, Others };
 
     std::string name;
     Kind kind;

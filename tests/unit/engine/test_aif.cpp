@@ -2,7 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/aif_composer.h"
 #include "test_stack.h"
-#include "twin_focus.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -128,84 +127,6 @@ TEST_P(AifFormats, agrees_with_its_twin)
                     << x << "," << y << " component " << c;
             }
 }
-
-/* Sharpness of one plane as sharp_blend.cl measures it, in DN. */
-Volume twin_sharpness(const Volume &luma)
-{
-    const auto mirror = [](int i, int n) { return i < 0 ? -i : i < n ? i : 2 * n - 2 - i; };
-    const int width = static_cast<int>(luma.width), height = static_cast<int>(luma.height);
-    Volume gradient(luma.width, luma.height, luma.planes), rows = gradient, mean = gradient;
-    const auto at = [&](const Volume &v, int x, int y, unsigned z) {
-        return v.at(mirror(x, width), mirror(y, height), z);
-    };
-    for (unsigned z = 0; z < luma.planes; z++) {
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++) {
-                float dx = 0.0f, dy = 0.0f;
-                for (int i = -1; i <= 1; i++) {
-                    dx += (2 - std::abs(i)) * (at(luma, x + 1, y + i, z) - at(luma, x - 1, y + i, z));
-                    dy += (2 - std::abs(i)) * (at(luma, x + i, y + 1, z) - at(luma, x + i, y - 1, z));
-                }
-                gradient.at(x, y, z) = std::hypot(dx, dy) / 8.0f;
-            }
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++)
-                for (int i = -3; i <= 3; i++)
-                    rows.at(x, y, z) += at(gradient, x + i, y, z) / 7.0f;
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++)
-                for (int i = -3; i <= 3; i++)
-                    mean.at(x, y, z) += at(rows, x, y + i, z) / 7.0f;
-    }
-    return mean;
-}
-
-class SharpFormats : public testing::TestWithParam<PixelFormat> {};
-
-TEST_P(SharpFormats, agrees_with_its_twin)
-{
-    const TestStack stack({GetParam(), 67, 65, 7});
-    const std::vector<uint16_t> depth = test_depth(stack.shape);
-    const std::vector<RowLayout> layout = packed_layout({GetParam(), 67, 65, 1});
-    std::vector<std::byte> picture(stack.memory.size() / 7);
-    AifComposer composer(Device::open(""), stack.shape);
-    composer.compose(stack.view(), {std::as_bytes(std::span(depth)), 67 * 2}, AifComposer::Blend::Sharp,
-                     picture, layout);
-
-    const Volume sharpness = twin_sharpness(twin::luma(stack));
-    const std::vector<Component> components = stack.shape.components();
-    size_t off = 0, samples = 0;
-    for (size_t c = 0; c < components.size(); c++)
-        for (unsigned y = 0; y < components[c].height; y++)
-            for (unsigned x = 0; x < components[c].width; x++) {
-                const unsigned pixel_x = x / components[c].channels;
-                const double u = position_of(depth, stack.shape, components[c], pixel_x, y);
-                const auto sharp = [&](unsigned z) {
-                    return sharpness.at(pixel_x * components[c].subsampling, y * components[c].subsampling,
-                                        z) +
-                           0.1;
-                };
-                const auto near = [&](unsigned z) {
-                    return u < 0.0 ? 1.0 : std::max(1.0 - std::abs(z - u) / 2.0, 0.0);
-                };
-                double sharpest = 0.0, sum = 0.0, weights = 0.0;
-                for (unsigned z = 0; z < 7; z++)
-                    sharpest = near(z) > 0.0 ? std::max(sharpest, sharp(z)) : sharpest;
-                for (unsigned z = 0; z < 7; z++) {
-                    const double weight = near(z) * std::pow(sharp(z) / sharpest, 16.0);
-                    sum += weight * stack.sample(c, x, y, z);
-                    weights += weight;
-                }
-                const std::byte *sample = picture.data() + layout[c].offset + layout[c].stride * y + x;
-                off += std::abs(static_cast<double>(*sample) - sum / weights) > 1.5;
-                samples++;
-            }
-    EXPECT_LE(off, samples / 100) << "the weights' high power makes much of a rounded sharpness";
-}
-
-INSTANTIATE_TEST_SUITE_P(Sharp, SharpFormats,
-                         testing::Values(PixelFormat::Gray8, PixelFormat::I420, PixelFormat::Nv12,
-                                         PixelFormat::Bgr, PixelFormat::Rgbx));
 
 INSTANTIATE_TEST_SUITE_P(
     Aif, AifFormats,

@@ -34,6 +34,16 @@ void expect_two_halves(const StackShape &shape)
         EXPECT_LT(depth[size_t{y} * shape.width + shape.width / 8], 6000);
         EXPECT_GT(depth[size_t{y} * shape.width + shape.width - shape.width / 8], 59000);
     }
+
+    AifComposer composer(Device::open(""), shape);
+    std::vector<std::byte> picture(depth.size());
+    composer.compose(stack.view(), {std::as_bytes(std::span(depth)), shape.width * sizeof(uint16_t)},
+                     AifComposer::Blend::Sharp, picture,
+                     packed_layout({shape.format, shape.width, shape.height, 1}));
+    for (const unsigned x : {shape.width / 8, shape.width - shape.width / 8})
+        EXPECT_NEAR(static_cast<double>(picture[size_t{shape.height / 2} * shape.width + x]),
+                    (x / 5 + shape.height / 2 / 5) % 2 * 200 + 20, 12.0)
+            << x;
 }
 
 } // namespace

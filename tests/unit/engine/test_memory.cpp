@@ -65,7 +65,8 @@ TEST_P(MemoryFormats, nothing_outside_of_the_pictures_is_touched)
         const GuardedMemory picture(stack.memory.size() / 3, flush);
         const std::vector<RowLayout> layout = packed_layout({GetParam(), 67, 65, 1});
         AifComposer composer(Device::open(""), shape);
-        for (const auto blend : {AifComposer::Blend::Linear, AifComposer::Blend::Soft})
+        for (const auto blend :
+             {AifComposer::Blend::Linear, AifComposer::Blend::Soft, AifComposer::Blend::Sharp})
             composer.compose(view, {depth.bytes(), 67 * sizeof(uint16_t)}, blend, picture.bytes(), layout);
     }
 }
