@@ -20,7 +20,7 @@ constexpr Range microseconds{0.0, 1e6};
 
 std::vector<double> rising_numbers(const FileEntries &entries, const char *name, Range range)
 {
-    const std::vector<double> numbers = entries.numbers(name, 2, 1000, range);
+    std::vector<double> numbers = entries.numbers(name, 2, 1000, range);
     if (std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) != numbers.end())
         entries.fail(std::string(name) + " must be numbers, each greater than the one before");
     return numbers;

@@ -2,7 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optics/settings_file.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/core.hpp>
@@ -15,7 +18,9 @@ namespace dff {
 
 namespace {
 
-constexpr size_t most_bytes = 1 << 20;
+constexpr std::uintmax_t most_bytes = 1 << 20;
+
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 /* The parser calls itself for each list or map in another; on a stack of 8 MiB, 10,000 levels of them do no
  * harm. */
@@ -36,6 +41,40 @@ size_t opening_marks(std::string_view text)
         marks += dash || is_one_of("[{<:", text[k]);
     }
     return marks;
+}
+
+/* The parser runs for ever, or past its buffer, on what follows the end of a document, which may also be
+ * where a line begins left of the first name. So there is one document, whose names begin at the line's
+ * beginning. */
+bool is_one_yaml_document(std::string_view text)
+{
+    bool marked = false, begun = false;
+    std::istringstream lines{std::string(text)};
+    std::string line;
+    std::getline(lines, line); /* %YAML:1.0 */
+    while (std::getline(lines, line)) {
+        const size_t content = line.find_first_not_of(" \t\r");
+        if (line.starts_with("---")) {
+            if (marked || begun || line.find_first_not_of(" \t\r", 3) != std::string::npos)
+                return false;
+            marked = true;
+        } else if (line.starts_with("...") || line.starts_with("%")) {
+            return false;
+        } else if (!begun && content != std::string::npos && line[content] != '#') {
+            if (content > 0 || !(std::isalnum(static_cast<unsigned char>(line[0])) || line[0] == '_'))
+                return false;
+            begun = true;
+        }
+    }
+    return begun;
+}
+
+bool is_text(std::string_view text)
+{
+    const auto is_control = [](unsigned char c) {
+        return (c < ' ' && !is_one_of("\t\r\n", static_cast<char>(c))) || c == 0x7f;
+    };
+    return std::none_of(text.begin(), text.end(), is_control);
 }
 
 std::string text_of(double value)
@@ -77,14 +116,19 @@ std::string FileEntries::File::read() const
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
         fail(error ? "it cannot be opened: " + error.message() : "it is not a file");
-    std::ifstream stream(path, std::ios::binary);
-    std::string text(most_bytes + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad())
-        fail("it cannot be read");
-    text.resize(static_cast<size_t>(stream.gcount()));
-    if (text.size() > most_bytes)
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size > most_bytes)
         fail("it has more than " + std::to_string(most_bytes >> 20) + " MiB");
+    std::ifstream stream(path, std::ios::binary);
+    std::string text(error ? 0 : size, '\0');
+    if (error || !stream.read(text.data(), static_cast<std::streamsize>(text.size())))
+        fail("it cannot be read");
+    if (!is_text(text))
+        fail("it has other characters than those of a text");
+    if (text.starts_with(byte_order_mark))
+        text.erase(0, byte_order_mark.size());
+    if (text.starts_with("%YAML") && !is_one_yaml_document(text))
+        fail("it is not a single YAML document, the names of whose entries begin at the line's beginning");
     if (opening_marks(text) > most_marks)
         fail("it has more than " + std::to_string(most_marks) + " entries and lists");
     return text;
@@ -188,7 +232,8 @@ std::vector<double> FileEntries::numbers(const char *name, size_t least, size_t 
 std::vector<FileEntries> FileEntries::list(const char *name, size_t most) const
 {
     const cv::FileNode node = find(name);
-    if (!node.isSeq() || node.size() == 0 || node.size() > most)
+    const size_t count = node.isSeq() ? node.size() : 0;
+    if (count == 0 || count > most)
         fail(place_ + name + " must be a list of 1 to " + std::to_string(most));
     std::vector<FileEntries> list;
     for (const cv::FileNode &entry : node) {

@@ -17,10 +17,11 @@ struct Range {
     double most = std::numeric_limits<double>::max();
 };
 
-/* The entries of a map in a file that a user wrote: a lens profile or a calibration, as YAML (with its first
- * line %YAML:1.0), JSON or XML. OpenCV's FileStorage reads it, after a look at its size and at how deep it
- * can be nested, for which the parser has no bounds. Nothing is taken for granted of what stands in it: each
- * function throws std::runtime_error with a user's text that names the file, the entry and what it may be. */
+/* The entries of a map in a file that a user wrote: a lens profile or a calibration, as JSON, XML, or YAML of
+ * one document with its first line %YAML:1.0. OpenCV's FileStorage reads it, after a look at what that does
+ * not bear: size, nesting, what follows a document's end. Nothing is taken for granted of what stands in it:
+ * each function throws std::runtime_error with a user's text that names the file, the entry and what it may
+ * be. */
 class FileEntries {
 public:
     /* The outermost entries. `kind` is what messages call such a file: "The camera calibration". */

@@ -93,7 +93,7 @@ TEST(SettingsFile, nesting_that_overflows_the_parser_is_refused_in_each_language
         const std::string texts[] = {
             yaml("a: " + repeated("[", depth)),
             yaml("a: " + repeated("{b: ", depth)),
-            yaml(repeated("- ", depth) + "1\n"),
+            yaml("a:\n" + repeated("- ", depth) + "1\n"),
             yaml("a:\n  " + repeated("-\t", depth) + "1\n"),
             yaml(repeated("a: ", depth) + "1\n"),
             yaml(repeated("a:", depth) + "1\n"),
@@ -129,13 +129,42 @@ TEST(SettingsFile, what_is_no_such_file_is_told_at_once)
     EXPECT_EQ(fault_of_path(pipe), "it is not a file") << "nobody writes into it";
     std::filesystem::remove(pipe);
 
+    for (const char c : {'\0', '\1', '\x1b', '\x7f'})
+        EXPECT_EQ(fault_of_path(TextFile(yaml("a: ") + c).path),
+                  "it has other characters than those of a text");
+
     const std::string unknown = "it is neither YAML (with a first line %YAML:1.0) nor JSON nor XML";
     for (const char *const text :
-         {"", "a: 1\n", "\x1f\x8b\x08", "%YAML", "%YAML:1.0\n---\na: [",
+         {"", "a: 1\n", "\x8b\x88", "%YAML:1.0\n---\na: [",
           "%YAML:1.0\n---\na:\n   -\n      dx: 3.0\n      :\n", "{\"a\": 1", "<?xml"})
         EXPECT_EQ(fault_of_path(TextFile(text).path).substr(0, unknown.size()), unknown) << text;
-    EXPECT_EQ(fault_of_path(TextFile("%YAML:1.0\n---\n- 1\n- 2\n").path), "it has no named entries");
+    EXPECT_EQ(fault_of_path(TextFile("[ 1, 2 ]").path).substr(0, unknown.size()), unknown);
     EXPECT_EQ(fault_of_path(TextFile(std::string(2 << 20, ' ')).path), "it has more than 1 MiB");
+}
+
+TEST(SettingsFile, the_parser_sees_one_yaml_document_or_it_would_not_come_back)
+{
+    for (const char *const text : {
+             "%YAML",
+             "%YAML:1.0\n",
+             "%YAML:1.0\n---\n# nothing\n",
+             "%YAML:1.0\n---\n- 1\n- 2\n",
+             "%YAML:1.0\n---\n{ a: 1 }\n",
+             "%YAML:1.0\n--- { a: 1 }\n",
+             "%YAML:1.\n---r:0\n---%\n-",
+             "%YAML:1.0\n---\n   a: 1\n123-",
+             "%YAML:1.0\n---\na: 1\n...\n-",
+             "%YAML:1.0\n---\na: 1\n---\n-",
+             "%YAML:1.0\n---\na: 1\n%YAML:1.0\n",
+         })
+        EXPECT_EQ(
+            fault_of_path(TextFile(text).path),
+            "it is not a single YAML document, the names of whose entries begin at the line's beginning")
+            << text;
+    for (const char *const text :
+         {"%YAML:1.0\n---\na: 1\n", "%YAML:1.0\na: 1\n", "%YAML:1.0\r\n---\r\n\r\n# a\r\n  # b\r\na: 1\r\n",
+          "\xef\xbb\xbf%YAML:1.0\n---\na: 1\n", "%YAML:1.0\n--- \n\na: 1\nb:\n   - 2\n"})
+        EXPECT_EQ(FileEntries("The file", TextFile(text).path).number("a", {}), 1.0) << text;
 }
 
 TEST(SettingsFile, numbers_are_finite_and_in_their_range_which_is_told)
