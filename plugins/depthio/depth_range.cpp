@@ -35,9 +35,13 @@ DepthRange::DepthRange(DepthScale scale, std::optional<double> near, std::option
     if (!near || !far)
         throw std::invalid_argument(
             "The range of the depth is not known: set near and far, in dioptres (1 / metres)");
-    if (*near <= *far)
+    if (!std::isfinite(scale_) || !std::isfinite(offset_) || scale_ == 0.0)
+        throw std::invalid_argument("The depth's scale is " + std::to_string(scale_) + " and its offset " +
+                                    std::to_string(offset_) + ": that says no distances");
+    if (!(*near > *far) || !std::isfinite(*near - *far))
         throw std::invalid_argument("near is " + std::to_string(*near) + " and far is " +
-                                    std::to_string(*far) + " dioptres: near must be the greater number");
+                                    std::to_string(*far) +
+                                    " dioptres: near must be the greater number, and both finite");
     near_ = *near;
     far_ = *far;
 }

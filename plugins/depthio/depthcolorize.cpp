@@ -124,8 +124,10 @@ static void prepare_table(GstDepthColorize *self, GstBuffer *frame)
     const GstDepthInfo depth = dff::depth_of(frame, state.caps);
     const dff::DepthRange range(dff::scale_of(depth), first_known(settings.range.near, depth.near),
                                 first_known(settings.range.far, depth.far));
-    if (!state.table || state.table->palette != settings.palette || state.table->range != range)
-        state.table.emplace(settings.palette, range);
+    if (state.table && state.table->palette == settings.palette && state.table->range == range)
+        return;
+    GST_INFO_OBJECT(self, "new colours: unit %d, scale %g, offset %g", depth.unit, depth.scale, depth.offset);
+    state.table.emplace(settings.palette, range);
 }
 
 static GstFlowReturn transform_frame(GstVideoFilter *filter, GstVideoFrame *depth, GstVideoFrame *picture)

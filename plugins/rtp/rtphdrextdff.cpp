@@ -98,7 +98,7 @@ static gsize get_max_size(GstRTPHeaderExtension *, const GstBuffer *input)
     return metas_of(const_cast<GstBuffer *>(input)).size();
 }
 
-static gssize write(GstRTPHeaderExtension *, const GstBuffer *input, GstRTPHeaderExtensionFlags,
+static gssize write(GstRTPHeaderExtension *extension, const GstBuffer *input, GstRTPHeaderExtensionFlags,
                     GstBuffer *packet, guint8 *data, gsize size)
 {
     if (!ends_a_frame(packet))
@@ -107,6 +107,7 @@ static gssize write(GstRTPHeaderExtension *, const GstBuffer *input, GstRTPHeade
     if (list.size() > size)
         return -1;
     std::copy(list.begin(), list.end(), data);
+    GST_LOG_OBJECT(extension, "%" G_GSIZE_FORMAT " bytes of metas of %" GST_PTR_FORMAT, list.size(), input);
     return static_cast<gssize>(list.size());
 }
 
@@ -119,6 +120,7 @@ static gboolean read(GstRTPHeaderExtension *extension, GstRTPHeaderExtensionFlag
         GST_WARNING_OBJECT(extension, "A frame comes without its metas: the last one is cut short");
         return TRUE;
     }
+    GST_LOG_OBJECT(extension, "%" G_GSIZE_FORMAT " metas for %" GST_PTR_FORMAT, records->size(), frame);
     for (const dff::Record record : *records)
         add_meta(extension, frame, record);
     return TRUE;

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 using namespace dff;
 
@@ -98,4 +100,19 @@ TEST(DepthRange, what_is_missing_is_told)
     EXPECT_THROW(DepthRange({DepthUnit::Millimetre, 1, 0}, std::nullopt, 1), std::invalid_argument);
     EXPECT_THROW(DepthRange({DepthUnit::Millimetre, 1, 0}, 1, 2), std::invalid_argument);
     EXPECT_NO_THROW(DepthRange({DepthUnit::Index, 1, 0}, std::nullopt, std::nullopt));
+}
+
+TEST(DepthRange, numbers_of_a_damaged_meta_are_told)
+{
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    for (const DepthUnit unit : {DepthUnit::Dioptre, DepthUnit::Millimetre})
+        for (const DepthScale scale :
+             {DepthScale{unit, nan, 0}, DepthScale{unit, 1, nan}, DepthScale{unit, inf, 0},
+              DepthScale{unit, 1, -inf}, DepthScale{unit, 0, 1}})
+            EXPECT_THROW(DepthRange(scale, 5, 1), std::invalid_argument)
+                << scale.scale << " " << scale.offset;
+    for (const auto &[near, far] :
+         {std::pair{nan, 1.0}, {5.0, nan}, {inf, 1.0}, {5.0, -inf}, {1e308, -1e308}})
+        EXPECT_THROW(DepthRange(dioptre_scale(5, 1), near, far), std::invalid_argument) << near << " " << far;
 }
