@@ -13,7 +13,7 @@ build_packages=(
     ocl-icd-opencl-dev opencl-clhpp-headers opencl-c-headers
     libopencv-dev libopenexr-dev libaravis-dev libusb-1.0-0-dev libgpiod-dev libglm-dev) # Aravis' pkg-config file asks for libusb
 test_packages=(
-    libgtest-dev libasan8 libubsan1 clang-format clang-tidy
+    libgtest-dev libasan8 libubsan1 clang-format clang-tidy clang libclang-rt-dev
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
     iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg)
 

@@ -75,6 +75,9 @@ check "sanitizer build, without a warning" build build-sanitize -Doptimization=g
 say "Testing the sanitizer build"
 meson_tests build-sanitize
 
+say "Fuzzing what reads files and packets of others"
+check "fuzzing, a minute" tests/fuzz/run.sh 60
+
 say "Checking the format of the code"
 check "clang-format" bash -c "git ls-files 'pipelines/rtsp/*.cpp' 'pipelines/rtsp/*.h' 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
     xargs clang-format --dry-run -Werror"
