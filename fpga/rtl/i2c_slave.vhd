@@ -143,9 +143,12 @@ begin
 
       case state is
 
+        -- Nothing of a transfer is left, however it ended
         when idle_state =>
 
           drive_low <= '0';
+          block_on  <= '0';
+          remaining <= 0;
 
         when receive_state =>
 
@@ -307,8 +310,7 @@ begin
           bit_count <= 0;
           drive_low <= '0';
         elsif (sda_in = '1' and sda_last = '0') then
-          state    <= idle_state;
-          block_on <= '0';
+          state <= idle_state;
         end if;
       end if;
 

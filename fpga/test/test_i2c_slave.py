@@ -199,6 +199,35 @@ async def transfer_that_stands_still_lets_go_of_the_bus(dut):
     assert await host.read_word(11) == rig.memory[11]
 
 
+async def read_on(host):
+    """A word without a command before it: where the slave stands."""
+    await host.start()
+    assert await host.send(0x3C << 1 | 1)
+    low, high = await host.receive(True), await host.receive(False)
+    await host.stop()
+    return high << 8 | low
+
+
+@cocotb.test()
+async def block_that_was_refused_is_forgotten(dut):
+    rig = Rig(dut)
+    await rig.begin()
+    await rig.host.start()
+    assert await rig.host.send(0x3C << 1) and await rig.host.send(0x80 | 10)
+    assert not await rig.host.send(3), "an odd count"
+    assert await read_on(rig.host) == rig.memory[10], "a word and not the count of a block"
+
+
+@cocotb.test()
+async def block_that_stood_still_is_forgotten(dut):
+    rig = Rig(dut)
+    await rig.begin()
+    await rig.host.start()
+    assert await rig.host.send(0x3C << 1) and await rig.host.send(0x80 | 10)
+    await cycles(dut, 26_000_000_000 // CLOCK_PS)
+    assert await read_on(rig.host) == rig.memory[10], "a word and not the count of a block"
+
+
 @cocotb.test()
 async def reset_releases_the_bus(dut):
     rig = Rig(dut)
