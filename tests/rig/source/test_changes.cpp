@@ -4,6 +4,7 @@
  * with their right planes each time, and the source can be stopped. */
 #include "proofs.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <thread>
@@ -64,14 +65,10 @@ const std::vector<Change> changes = {
      [](const Watched &frames, double rate, int k) {
          return std::abs(frames.frame_rate - 3 * new_rate(rate, k)) < 1e-4 * rate;
      }},
-    {"gain",
+    {"gain_and_timeout",
      [](GstElement *source, GstElement *, double, int k) {
-         g_object_set(source, "gain", 0.5 * (k % 2), nullptr);
-     },
-     [](const Watched &, double, int) { return true; }},
-    {"trigger_timeout",
-     [](GstElement *source, GstElement *, double, int k) {
-         g_object_set(source, "trigger-timeout", (60 + static_cast<guint64>(k)) * GST_SECOND, nullptr);
+         g_object_set(source, "gain", 0.5 * (k % 2), "trigger-timeout",
+                      (60 + static_cast<guint64>(k)) * GST_SECOND, nullptr);
      },
      [](const Watched &, double, int) { return true; }},
     {"caps",
@@ -115,6 +112,12 @@ public:
     }
     ChangedStream(const ChangedStream &) = delete;
     ChangedStream &operator=(const ChangedStream &) = delete;
+
+    void play()
+    {
+        stopped_ = false;
+        stream_.play();
+    }
 
     void change(int k) { change_.make(source_.get(), filter_.get(), wiring_.rate, k); }
 
@@ -169,7 +172,7 @@ protected:
 TEST_P(Changes, the_stream_goes_on_after_each_and_can_be_stopped)
 {
     ChangedStream stream(wiring(), change());
-    for (int k = 0; k < cycles_of_proof(8); k++) {
+    for (int k = 0; k < cycles_of_proof(4); k++) {
         stream.change(k);
         ASSERT_TRUE(stream.comes_again(k)) << "after change " << k << ": " << stream.stats();
     }
@@ -189,6 +192,29 @@ TEST_P(Changes, twenty_at_once_are_as_good_as_one)
     stream.change(20);
     std::this_thread::sleep_for(20ms);
     EXPECT_TRUE(stream.stop_at_once()) << "while a change is taken over";
+}
+
+/* Each state change meets a change of something at another moment. */
+TEST_P(Changes, another_thread_may_make_them_while_the_source_starts_and_stops)
+{
+    ChangedStream stream(wiring(), change());
+    std::atomic<bool> done = false;
+    std::thread other([&] {
+        for (int k = 0; !done; k++) {
+            stream.change(k);
+            std::this_thread::sleep_for(std::chrono::milliseconds(k % 7));
+        }
+    });
+    for (int cycle = 0; cycle < 4; cycle++) {
+        EXPECT_TRUE(stream.stop_at_once()) << "cycle " << cycle;
+        stream.play();
+        std::this_thread::sleep_for(std::chrono::milliseconds(60 * cycle));
+    }
+    done = true;
+    other.join();
+    stream.change(19);
+    EXPECT_TRUE(stream.comes_again(19)) << stream.stats();
+    stream.expect_right_labels();
 }
 
 INSTANTIATE_TEST_SUITE_P(Rig, Changes,
