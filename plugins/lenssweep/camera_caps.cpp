@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "camera_caps.h"
 
-#include "camera/camera_error.h"
+#include "camera/camera_control.h"
 
 #include <algorithm>
 #include <gst/video/video.h>

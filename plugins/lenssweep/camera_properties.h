@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "camera/capture_settings.h"
+#include "camera/camera_setup.h"
 #include "sweep_properties.h"
 
 #include <gst/gst.h>

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "aravis_camera.h"
 
-#include "camera_error.h"
+#include "camera_control.h"
 #include "camera_list.h"
 
 namespace dff {

@@ -3,17 +3,48 @@
 #pragma once
 
 #include "camera_control.h"
-#include "frame_numbers.h"
-#include "glib_handles.h"
+#include "camera_frame.h"
 
 #include <arv.h>
 #include <atomic>
 #include <functional>
+#include <glib-object.h>
+#include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace dff {
+
+struct ObjectUnref {
+    void operator()(gpointer object) const { g_object_unref(object); }
+};
+
+template <typename Object> using ObjectRef = std::unique_ptr<Object, ObjectUnref>;
+
+/* Takes the GError of a call: some_call(..., error.out()); error.check("what failed"). */
+class CallError {
+public:
+    CallError() = default;
+    CallError(const CallError &) = delete;
+    CallError &operator=(const CallError &) = delete;
+    ~CallError() { g_clear_error(&error_); }
+
+    GError **out() { return &error_; }
+    bool failed() const { return error_ != nullptr; }
+    bool is(GQuark domain, int code) const { return g_error_matches(error_, domain, code) != FALSE; }
+
+    /* Throws an Error that begins with `what`. */
+    template <typename Error = std::runtime_error> void check(const std::string &what) const
+    {
+        if (error_)
+            throw Error(what + ": " + error_->message);
+    }
+
+private:
+    GError *error_ = nullptr;
+};
 
 /* A rectangle of the sensor's. */
 struct CameraRegion {

@@ -4,9 +4,20 @@
 
 #include "lenssweep/lens/camera_features.h"
 
+#include <stdexcept>
 #include <string>
 
 namespace dff {
+
+/* A camera cannot be had or used. The text is for the user and says what to do. */
+class CameraError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/* However it shows. */
+inline constexpr const char *camera_gone =
+    "The camera does not answer any more. Check its cable and power, then start again.";
 
 /* What setting up a camera needs beyond what a lens needs. Throws as CameraFeatures does. */
 class CameraControl : public CameraFeatures {

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "camera_stream.h"
 
-#include "camera_error.h"
+#include "camera_control.h"
 #include "capture_poll.h"
 
 #include <utility>

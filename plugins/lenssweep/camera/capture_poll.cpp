@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "capture_poll.h"
 
-#include "camera_error.h"
+#include "camera_control.h"
 
 #include <algorithm>
 #include <array>

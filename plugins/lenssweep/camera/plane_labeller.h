@@ -2,23 +2,18 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "frame_numbers.h"
+#include "camera_frame.h"
+#include "trigger_times.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace dff {
-
-/* What is known of a frame beside its pixels. */
-struct CameraFrame {
-    std::uint64_t id = 0;        /* the camera's number */
-    std::int64_t camera_ns = 0;  /* of the camera's own clock; 0: it has none */
-    std::int64_t arrival_ns = 0; /* when its last byte was here, by the host's CLOCK_MONOTONIC */
-
-    /* The best that says when it was exposed, up to a constant. */
-    std::int64_t stamp_ns() const { return camera_ns != 0 ? camera_ns : arrival_ns; }
-};
 
 struct FrameLabel {
     std::uint64_t sweep;
@@ -73,6 +68,102 @@ public:
     virtual bool lost() const = 0;
 
     virtual const LabelCounts &counts() const = 0;
+};
+
+/* Follows the numbers of frames, and counts what they tell: frames that were lost, and those that came twice.
+ */
+class FrameLedger {
+public:
+    FrameLedger(FrameNumbers numbers, LabelCounts &counts) : numbers_(numbers), counts_(counts) {}
+
+    /* The next number has nothing to do with those before. */
+    void restart();
+
+    /* Why a frame can have no label, whatever its time; empty if nothing is wrong with its number. */
+    std::optional<Unlabelled> enter(std::uint64_t id);
+
+    /* The sweep is one of those that are dropped; counted once. */
+    void drop_sweep(std::uint64_t sweep);
+    bool dropped(std::uint64_t sweep) const { return dropped_ == sweep; }
+
+private:
+    bool seen(std::uint64_t id) const;
+
+    FrameNumbers numbers_;
+    LabelCounts &counts_;
+    std::array<std::optional<std::uint64_t>, 64> recent_;
+    std::size_t next_ = 0;
+    std::optional<std::uint64_t> newest_;
+    std::optional<std::uint64_t> dropped_;
+};
+
+/* Labels frames whose triggers nobody sees: it counts. The first frame is plane 0; from then on the numbers
+ * of the frames tell the plane. Where they are of triggers, the time that passed between two frames must be
+ * that of as many periods. If it is not, the triggers rested or the camera missed one, and nothing tells
+ * which: no frame has a label until start() is called. A camera that triggers itself misses nothing, and its
+ * times do not matter.
+ *
+ * After a beginning from rest the first frame must have arrived within an exposure and a period, else the
+ * first ones may be lost. */
+class CountingLabeller : public PlaneLabeller {
+public:
+    enum class Counts { Triggers, FreeRun };
+
+    CountingLabeller(const SweepTiming &timing, FrameNumbers numbers, Counts what = Counts::Triggers);
+
+    void start(Beginning beginning, std::int64_t host_ns) override;
+    FrameVerdict label(const CameraFrame &frame) override;
+    bool lost() const override { return lost_; }
+    const LabelCounts &counts() const override { return counts_; }
+
+private:
+    struct Placed {
+        CameraFrame frame;
+        std::int64_t index;
+    };
+
+    FrameVerdict place(const CameraFrame &frame);
+    bool is_first(const CameraFrame &frame) const;
+    bool agrees(const CameraFrame &frame, std::int64_t index) const;
+    FrameVerdict give_up();
+
+    SweepTiming timing_;
+    FrameNumbers numbers_;
+    Counts what_;
+    LabelCounts counts_;
+    FrameLedger ledger_{numbers_, counts_};
+    std::optional<std::int64_t> rested_until_ns_;
+    std::optional<Placed> newest_;
+    std::int64_t next_sweep_ = 0;
+    bool lost_ = false;
+};
+
+/* Notices when frames come and labels stay away, and says it once for each cause: a stream that only counts
+ * what it drops looks like one that hangs. */
+class LabelWatch {
+public:
+    explicit LabelWatch(unsigned planes) : planes_(planes) {}
+
+    /* A frame and its verdict, with the number of sweeps that were dropped until then. */
+    void judged(const FrameVerdict &verdict, std::uint64_t dropped_sweeps);
+
+    /* What the user should know; empty if it was told already. */
+    std::string take_complaint() { return std::exchange(complaint_, {}); }
+
+private:
+    void labelled(const FrameLabel &label);
+    void complain(const std::string &what);
+    Unlabelled main_reason() const;
+
+    unsigned planes_;
+    std::array<unsigned, unlabelled_reasons> reasons_{}; /* of frames since the last whole sweep */
+    unsigned unlabelled_in_row_ = 0;
+    std::uint64_t dropped_sweeps_ = 0;
+    unsigned dropped_in_row_ = 0; /* with no whole sweep between them */
+    std::uint64_t sweep_ = 0;     /* of the last label */
+    unsigned labels_ = 0;         /* in it */
+    std::set<Unlabelled> told_;
+    std::string complaint_;
 };
 
 } // namespace dff

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sweep_capture.h"
 
-#include "camera_error.h"
+#include "camera_control.h"
 #include "lenssweep/lens/open_lens.h"
 
 #include <algorithm>

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "aravis_camera.h"
+#include "camera_frame.h"
+#include "camera_setup.h"
 #include "camera_stream.h"
 #include "capture_poll.h"
-#include "capture_settings.h"
-#include "exposure_clock.h"
-#include "label_watch.h"
 #include "link_load.h"
 #include "pixel_layout.h"
-#include "sweep_timing.h"
+#include "plane_labeller.h"
+#include "trigger_times.h"
 #include "triggers.h"
 
 #include "lenssweep/lens/lens.h"

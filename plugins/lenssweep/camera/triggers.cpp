@@ -3,7 +3,7 @@
 #include "triggers.h"
 
 #include "capture_poll.h"
-#include "counting_labeller.h"
+#include "plane_labeller.h"
 #include "trigger_labeller.h"
 
 #include <algorithm>

@@ -3,13 +3,10 @@
 #pragma once
 
 #include "camera_control.h"
-#include "frame_numbers.h"
+#include "camera_frame.h"
 #include "plane_labeller.h"
-#include "sent_triggers.h"
 #include "side_thread.h"
-#include "sweep_timing.h"
-#include "sync_rhythm.h"
-#include "trigger_count.h"
+#include "trigger_times.h"
 
 #include "lenssweep/lens/lens.h"
 #include "lenssweep/trigger/lines.h"

@@ -4,9 +4,8 @@
 
 #include "simulated_rig.h"
 
-#include "lenssweep/camera/sync_rhythm.h"
-#include "lenssweep/camera/trigger_count.h"
 #include "lenssweep/camera/trigger_labeller.h"
+#include "lenssweep/camera/trigger_times.h"
 
 #include <algorithm>
 #include <functional>

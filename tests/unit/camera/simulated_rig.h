@@ -2,9 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "lenssweep/camera/frame_numbers.h"
+#include "lenssweep/camera/camera_frame.h"
 #include "lenssweep/camera/plane_labeller.h"
-#include "lenssweep/camera/sweep_timing.h"
+#include "lenssweep/camera/trigger_times.h"
 
 #include <cstdint>
 #include <random>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-#include "lenssweep/camera/camera_error.h"
+#include "lenssweep/camera/camera_control.h"
+#include "lenssweep/camera/camera_frame.h"
 #include "lenssweep/camera/camera_setup.h"
-#include "lenssweep/camera/exposure_clock.h"
 #include "lenssweep/camera/link_load.h"
 #include "lenssweep/camera/pixel_layout.h"
 

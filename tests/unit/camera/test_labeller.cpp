@@ -2,9 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "label_bench.h"
 
-#include "lenssweep/camera/counting_labeller.h"
-#include "lenssweep/camera/label_watch.h"
-#include "lenssweep/camera/sent_triggers.h"
+#include "lenssweep/camera/plane_labeller.h"
+#include "lenssweep/camera/trigger_times.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 /* Thousands of sequences in which frames and edges are lost, doubled, late and out of order, and counts of
  * triggers are read late or not at all: not one label may be wrong. DFF_SEQUENCES says how many, DFF_SEED
  * where to begin. */
-#include "lenssweep/camera/counting_labeller.h"
-#include "lenssweep/camera/sync_rhythm.h"
+#include "lenssweep/camera/plane_labeller.h"
 #include "lenssweep/camera/trigger_labeller.h"
+#include "lenssweep/camera/trigger_times.h"
 #include "simulated_rig.h"
 
 #include <algorithm>
