@@ -25,9 +25,10 @@
  * times and commands must agree.
  * - `free-run`: nothing moves in step; frames are counted, those that were lost by their numbers.
  *
- * Silence of the trigger is no error, unless `trigger-timeout` says so. A camera that does not answer any
- * more ends the stream with an error; set the pipeline to NULL and PLAYING again when it is back. Buffers
- * stay valid after that, and after the end of the pipeline.
+ * Silence of the trigger is no error, unless `trigger-timeout` says so. Frames that come and whose planes
+ * cannot be told, or sweeps that are dropped in a row, are told in a warning, once a cause. A camera that
+ * does not answer any more ends the stream with an error; set the pipeline to NULL and PLAYING again when it
+ * is back. Buffers stay valid after that, and after the end of the pipeline.
  *
  * The PTS is the running time at which the exposure began. The camera's own clock is in a
  * #GstReferenceTimestampMeta with the caps `timestamp/x-ptp` if it follows PTP, else `timestamp/x-camera`.

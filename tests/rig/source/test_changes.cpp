@@ -32,7 +32,7 @@ const std::vector<Wiring> wirings = {
      {"--lens=register", "--planes=3"},
      false,
      "trigger=software lens=genicam:FocalPower exposure=5000",
-     8,
+     4,
      true},
     {"free_run", {"--planes=3"}, false, "trigger=free-run exposure=5000", 30, false},
 };

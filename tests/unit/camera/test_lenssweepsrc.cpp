@@ -344,6 +344,24 @@ TEST(LensSweepSrc, a_stack_comes_of_its_planes)
     EXPECT_EQ(Pipeline(camera + "num-buffers=12 ! focalstackmux ! fakesink").run(), "");
 }
 
+TEST(LensSweepSrc, two_at_once_do_not_disturb_each_other)
+{
+    const std::string second = "lenssweepsrc name=second camera=Fake_2 trigger=free-run planes=3 rate=20 "
+                               "exposure=5000 ! appsink name=other sync=false";
+    Pipeline both(camera + out + " " + second);
+    for (int cycle = 0; cycle < 3; cycle++) {
+        both.set_state(GST_STATE_PLAYING);
+        for (guint i = 0; i < 12; i++) {
+            const Sample one = both.pull("out");
+            const Sample other = both.pull("other");
+            ASSERT_TRUE(one && other) << both.wait();
+            EXPECT_EQ(focus_of(one)->planes, 4U);
+            EXPECT_EQ(focus_of(other)->planes, 3U);
+        }
+        EXPECT_EQ(both.set_state(GST_STATE_NULL), GST_STATE_CHANGE_SUCCESS);
+    }
+}
+
 TEST(LensSweepSrc, starts_and_stops_leak_no_thread_and_no_file)
 {
     Pipeline pipeline(camera + "! fakesink sync=false");
