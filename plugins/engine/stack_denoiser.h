@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/noise_curve.h"
+#include "engine/opencl/host_buffer.h"
+#include "engine/plane_tracker.h"
+
+namespace dff {
+
+struct DenoiseParameters {
+    uint32_t frames = 8;   /* sweeps that are averaged at most: 1 to 255 */
+    float strength = 1.0f; /* how much change passes for noise: 1 is six standard deviations */
+};
+
+/* What the denoiser knows after a stack. */
+struct DenoiseReport {
+    std::vector<NoiseCurve> noise; /* of each component (luma and chroma, or interleaved colours) */
+    std::vector<float> spread;     /* of each component's tiles, see spread_of_tiles() */
+    double sample_unit = 1.0;      /* of the noise, where white is 256 */
+    double mean_sweeps = 0.0;      /* that were averaged, over all tiles and planes */
+};
+
+/* Averages each plane of a focal stack with the same plane of the stacks before, in tiles of 8x8 pixels,
+ * where nothing moved: kernels/stack_denoise.cl. What is noise and what is motion goes by a noise curve that
+ * is estimated from the stacks themselves. */
+class StackDenoiser {
+public:
+    /* Throws EngineError. */
+    StackDenoiser(std::shared_ptr<Device> device, const StackShape &shape);
+
+    /* Denoises the stack in place: `memory` are the bytes of `view`. Planes whose bit is set in `absent` do
+     * not show what they should (lost, or another plane's picture) and stay as they are. Throws EngineError.
+     */
+    void denoise(const StackView &view, std::span<std::byte> memory, uint64_t absent,
+                 const DenoiseParameters &parameters);
+
+    /* The next stack shows another scene: nothing before it is averaged with it. */
+    void forget() { has_means_ = false; }
+
+    /* Of the last stack. Reads back from the device. */
+    DenoiseReport report();
+
+    StageTimes times() const { return times_; }
+
+private:
+    struct ComponentState;
+
+    void upload(const StackView &view, std::span<std::byte> memory);
+    void begin(const StackView &view);
+    void look_at_noise(const StackView &view, uint32_t z);
+    void measure();
+    void judge(const DenoiseParameters &parameters);
+    void average(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
+    void learn_noise();
+    template <typename... Arguments> void run_tiles(cl::Kernel &kernel, const Arguments &...arguments);
+    size_t tiles_a_plane() const
+    {
+        return static_cast<size_t>(tiles_.s[0]) * static_cast<size_t>(tiles_.s[1]);
+    }
+
+    std::shared_ptr<Device> device_;
+    CommandQueue queue_;
+    StackShape shape_;
+    cl_int2 tiles_; /* across and down */
+    cl_int run_;    /* tiles a work-item */
+    HostBuffer bytes_;
+    cl::Buffer moved_, sweeps_;
+    std::vector<std::shared_ptr<ComponentState>> components_;
+    PlaneTracker tracker_;
+    bool has_means_ = false;
+    bool has_learned_ = false;   /* noise from the difference of two sweeps */
+    uint32_t learned_plane_ = 0; /* which tells of noise in this stack */
+    StageTimes times_;
+};
+
+} // namespace dff

@@ -1,0 +1,406 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/stack_denoiser.h"
+#include "test_stack.h"
+
+#include <cmath>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <random>
+
+using namespace dff;
+
+namespace {
+
+unsigned sample_of(const TestStack &stack, const Component &component, const RowLayout &rows, unsigned x,
+                   unsigned y)
+{
+    unsigned value = 0;
+    std::memcpy(&value,
+                stack.memory.data() + rows.offset + rows.stride * y + size_t{x} * component.sample_bytes,
+                component.sample_bytes);
+    return value;
+}
+
+void set_sample(TestStack &stack, const Component &component, const RowLayout &rows, unsigned x, unsigned y,
+                double value)
+{
+    const double most = component.sample_bytes == 2 ? 65535.0 : 255.0;
+    const auto rounded = static_cast<uint16_t>(std::lround(std::clamp(value, 0.0, most)));
+    std::memcpy(stack.memory.data() + rows.offset + rows.stride * y + size_t{x} * component.sample_bytes,
+                &rounded, component.sample_bytes);
+}
+
+template <typename Work> void for_each_sample(const StackShape &shape, const Work &work)
+{
+    const auto components = shape.components();
+    for (size_t c = 0; c < components.size(); c++)
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 0; y < components[c].height; y++)
+                for (unsigned x = 0; x < components[c].width; x++)
+                    work(c, components[c], z, x, y);
+}
+
+/* `clean` with normal noise of a standard deviation in units of which white has 256. */
+TestStack noisy(const TestStack &clean, double sigma, unsigned seed)
+{
+    TestStack stack = clean;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0.0, sigma);
+    for_each_sample(clean.shape,
+                    [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
+                        const RowLayout &rows = clean.layout[c * clean.shape.planes + z];
+                        const double unit = component.sample_bytes == 2 ? 256.0 : 1.0;
+                        set_sample(stack, component, rows, x, y,
+                                   sample_of(clean, component, rows, x, y) + unit * noise(random));
+                    });
+    return stack;
+}
+
+/* Soft pictures, which leave room for noise at both ends. */
+TestStack smooth_stack(const StackShape &shape, double phase = 0.0)
+{
+    TestStack stack(shape);
+    for_each_sample(shape, [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
+        const double value = 128 + 50 * std::sin(0.11 * x + 0.07 * y + z + phase);
+        set_sample(stack, component, stack.layout[c * shape.planes + z], x, y,
+                   component.sample_bytes == 2 ? 256 * value : value);
+    });
+    return stack;
+}
+
+double mean_square(const TestStack &a, const TestStack &b)
+{
+    double sum = 0.0, count = 0.0;
+    for_each_sample(a.shape, [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
+        const RowLayout &rows = a.layout[c * a.shape.planes + z];
+        const double unit = component.sample_bytes == 2 ? 256.0 : 1.0;
+        const double difference = (static_cast<double>(sample_of(a, component, rows, x, y)) -
+                                   static_cast<double>(sample_of(b, component, rows, x, y))) /
+                                  unit;
+        sum += difference * difference;
+        count++;
+    });
+    return sum / count;
+}
+
+void denoise(StackDenoiser &denoiser, TestStack &stack, const DenoiseParameters &parameters = {},
+             uint64_t absent = 0)
+{
+    const StackView view = stack.view();
+    denoiser.denoise(view, stack.memory, absent, parameters);
+}
+
+/* stack_denoise.cl in plain words: what it does to one component, in double. */
+class Twin {
+public:
+    Twin(const StackShape &shape, size_t index)
+        : shape_(shape), index_(index), component_(shape.components()[index]),
+          width_(8 / component_.subsampling * component_.channels), rows_(8 / component_.subsampling),
+          across_((shape.width + 7) / 8), down_((shape.height + 7) / 8),
+          means_(size_t{shape.planes} * component_.width * component_.height)
+    {
+    }
+
+    size_t tiles() const { return size_t{across_} * down_; }
+
+    std::vector<TileDifference> measure(const TestStack &stack, unsigned z) const
+    {
+        std::vector<TileDifference> tiles;
+        for (unsigned ty = 0; ty < down_; ty++)
+            for (unsigned tx = 0; tx < across_; tx++)
+                tiles.push_back(difference(stack, z, std::min(tx * width_, component_.width - width_),
+                                           std::min(ty * rows_, component_.height - rows_)));
+        return tiles;
+    }
+
+    float samples() const { return static_cast<float>(width_ * rows_); }
+
+    bool moved(const TileDifference &tile, const NoiseCurve &curve, unsigned sweeps, float spread) const
+    {
+        const float white = component_.sample_bytes == 2 ? 65536.0F : 256.0F;
+        const float least = 0.3F * white / 256.0F;
+        const float place = std::clamp(tile.brightness * 16.0F / white - 0.5F, 0.0F, 15.0F);
+        const auto i = std::min(static_cast<size_t>(place), size_t{14});
+        const float variance = std::lerp(curve[i], curve[i + 1], place - static_cast<float>(i)) *
+                               (1.0F + 1.0F / static_cast<float>(std::max(sweeps, 1U)));
+        return std::fabs(tile.mean) > 6 * std::sqrt(variance * spread / samples()) + least ||
+               tile.square > variance * (1 + 6 * std::sqrt(2 * spread / samples())) + least;
+    }
+
+    void average(TestStack &stack, unsigned z, const std::vector<uint8_t> &sweeps)
+    {
+        const RowLayout &rows = stack.layout[index_ * shape_.planes + z];
+        for (unsigned y = 0; y < component_.height; y++)
+            for (unsigned x = 0; x < component_.width; x++) {
+                double &mean = mean_at(x, y, z);
+                mean += (sample_of(stack, component_, rows, x, y) - mean) /
+                        sweeps[(y / rows_) * across_ + x / width_];
+                set_sample(stack, component_, rows, x, y, mean);
+            }
+    }
+
+    unsigned across() const { return across_; }
+    unsigned down() const { return down_; }
+
+private:
+    double &mean_at(unsigned x, unsigned y, unsigned z)
+    {
+        return means_[(size_t{z} * component_.height + y) * component_.width + x];
+    }
+
+    TileDifference difference(const TestStack &stack, unsigned z, unsigned x0, unsigned y0) const
+    {
+        double sum = 0.0, squares = 0.0, brightness = 0.0;
+        for (unsigned y = y0; y < y0 + rows_; y++)
+            for (unsigned x = x0; x < x0 + width_; x++) {
+                const double m = const_cast<Twin *>(this)->mean_at(x, y, z);
+                const double d =
+                    sample_of(stack, component_, stack.layout[index_ * shape_.planes + z], x, y) - m;
+                sum += d;
+                squares += d * d;
+                brightness += m;
+            }
+        const double n = width_ * rows_;
+        return {static_cast<float>(sum / n), static_cast<float>(squares / n),
+                static_cast<float>(brightness / n), 0};
+    }
+
+    StackShape shape_;
+    size_t index_;
+    Component component_;
+    unsigned width_, rows_, across_, down_;
+    std::vector<double> means_;
+};
+
+/* The whole of it for stacks of one component, with the denoiser's own word for the noise. */
+class TwinOfDenoiser {
+public:
+    explicit TwinOfDenoiser(const StackShape &shape)
+        : shape_(shape), twin_(shape, 0), sweeps_(shape.planes, std::vector<uint8_t>(twin_.tiles(), 0))
+    {
+    }
+
+    void denoise(TestStack &stack, const NoiseCurve &curve, float spread, unsigned frames)
+    {
+        for (unsigned z = 0; z < shape_.planes; z++) {
+            const auto tiles = twin_.measure(stack, z);
+            std::vector<bool> moved;
+            for (size_t i = 0; i < tiles.size(); i++)
+                moved.push_back(twin_.moved(tiles[i], curve, sweeps_[z][i], spread));
+            count(sweeps_[z], moved, frames);
+            twin_.average(stack, z, sweeps_[z]);
+        }
+    }
+
+private:
+    void count(std::vector<uint8_t> &sweeps, const std::vector<bool> &moved, unsigned frames) const
+    {
+        const int across = static_cast<int>(twin_.across()), down = static_cast<int>(twin_.down());
+        for (int i = 0; i < across * down; i++) {
+            bool near = false;
+            for (int y = std::max(i / across - 1, 0); y <= std::min(i / across + 1, down - 1); y++)
+                for (int x = std::max(i % across - 1, 0); x <= std::min(i % across + 1, across - 1); x++)
+                    near = near || moved[static_cast<size_t>(y) * twin_.across() + static_cast<size_t>(x)];
+            auto &k = sweeps[static_cast<size_t>(i)];
+            k = near ? 1 : static_cast<uint8_t>(std::min<unsigned>(k + 1U, frames));
+        }
+    }
+
+    StackShape shape_;
+    Twin twin_;
+    std::vector<std::vector<uint8_t>> sweeps_;
+};
+
+struct Case {
+    PixelFormat format;
+    KernelStyle style;
+};
+
+class Formats : public testing::TestWithParam<Case> {};
+
+std::string name_of(const testing::TestParamInfo<Case> &info)
+{
+    static const char *const names[] = {"gray8", "gray16", "i420", "nv12", "rgb", "bgr", "rgbx", "bgrx"};
+    return std::string(names[static_cast<int>(info.param.format)]) +
+           (info.param.style == KernelStyle::Tiles ? "_tiles" : "_pixels");
+}
+
+} // namespace
+
+/* With the noise that the report tells; the picture's sizes are no multiples
+ * of a tile's. Something moves in the third stack. */
+TEST(StackDenoiser, agrees_with_its_twin)
+{
+    for (const PixelFormat format : {PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::Rgb})
+        for (const KernelStyle style : {KernelStyle::Tiles, KernelStyle::Pixels}) {
+            const StackShape shape{format, 75, 67, 2};
+            const TestStack clean = smooth_stack(shape);
+            StackDenoiser denoiser(device_with(style), shape);
+            TwinOfDenoiser twin(shape);
+            for (unsigned t = 0; t < 5; t++) {
+                TestStack stack = noisy(clean, 4.0, t);
+                if (t >= 2)
+                    std::fill_n(stack.memory.begin() + stack.layout[1].offset + 20 * stack.layout[1].stride,
+                                stack.layout[1].stride / 2, std::byte{200});
+                TestStack expected = stack;
+                denoise(denoiser, stack, {3, 1.0F});
+                const DenoiseReport used = denoiser.report();
+                twin.denoise(expected, used.noise[0], used.spread[0], 3);
+                EXPECT_LT(mean_square(stack, expected), 0.002) << "stack " << t;
+            }
+        }
+}
+
+TEST_P(Formats, noise_of_a_still_scene_falls_with_the_number_of_sweeps)
+{
+    const StackShape shape{GetParam().format, 130, 94, 3};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(device_with(GetParam().style), shape);
+    double error = 0.0;
+    for (unsigned t = 0; t < 8; t++) {
+        TestStack stack = noisy(clean, 6.0, t);
+        denoise(denoiser, stack);
+        error = mean_square(stack, clean);
+    }
+    EXPECT_LT(error, 36.0 / 8 * 1.15 + 1.0 / 12);
+    EXPECT_GT(denoiser.report().mean_sweeps, 7.5);
+}
+
+TEST_P(Formats, noise_is_told)
+{
+    const StackShape shape{GetParam().format, 320, 240, 2};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(device_with(GetParam().style), shape);
+    for (unsigned t = 0; t < 4; t++) {
+        TestStack stack = noisy(clean, 6.0, t);
+        denoise(denoiser, stack);
+    }
+    const DenoiseReport report = denoiser.report();
+    for (const NoiseCurve &curve : report.noise)
+        EXPECT_NEAR(std::sqrt(curve[8]) * report.sample_unit, 6.0, 0.9);
+}
+
+TEST_P(Formats, a_cut_shows_the_new_scene_alone)
+{
+    const StackShape shape{GetParam().format, 96, 80, 2};
+    const TestStack before = smooth_stack(shape), after = smooth_stack(shape, 2.5);
+    StackDenoiser denoiser(device_with(GetParam().style), shape);
+    for (unsigned t = 0; t < 4; t++) {
+        TestStack stack = noisy(before, 3.0, t);
+        denoise(denoiser, stack);
+    }
+    const TestStack cut = noisy(after, 3.0, 9);
+    TestStack stack = cut;
+    denoise(denoiser, stack);
+    EXPECT_EQ(stack.memory, cut.memory);
+}
+
+INSTANTIATE_TEST_SUITE_P(StackDenoiser, Formats,
+                         testing::Values(Case{PixelFormat::Gray8, KernelStyle::Tiles},
+                                         Case{PixelFormat::Gray8, KernelStyle::Pixels},
+                                         Case{PixelFormat::Gray16, KernelStyle::Tiles},
+                                         Case{PixelFormat::I420, KernelStyle::Tiles},
+                                         Case{PixelFormat::I420, KernelStyle::Pixels},
+                                         Case{PixelFormat::Nv12, KernelStyle::Tiles},
+                                         Case{PixelFormat::Rgb, KernelStyle::Tiles},
+                                         Case{PixelFormat::Bgrx, KernelStyle::Tiles}),
+                         name_of);
+
+/* Even where texture moves by a pixel only, which hardly changes a tile's mean. */
+TEST(StackDenoiser, what_moves_leaves_no_ghost)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 96, 2};
+    TestStack texture = smooth_stack(shape);
+    const TestStack fine(shape);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 24; y < 72; y++)
+            for (unsigned x = 32; x < 128; x++)
+                set_sample(texture, shape.components()[0], texture.layout[z], x, y, fine.sample(0, x, y, z));
+    StackDenoiser denoiser(Device::open(""), shape);
+    for (unsigned t = 0; t < 6; t++) {
+        TestStack moving = texture;
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 32; y < 64; y++)
+                for (unsigned x = 40; x < 100; x++)
+                    set_sample(moving, shape.components()[0], moving.layout[z], x, y,
+                               texture.sample(0, x + t, y, z));
+        moving = noisy(moving, 3.0, t);
+        TestStack stack = moving;
+        denoise(denoiser, stack);
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 32; y < 64; y++)
+                for (unsigned x = 40; x < 100; x++)
+                    ASSERT_EQ(stack.sample(0, x, y, z), moving.sample(0, x, y, z))
+                        << x << " " << y << " in " << t;
+    }
+}
+
+TEST(StackDenoiser, a_plane_that_is_absent_stays_as_it_is_and_the_next_goes_on)
+{
+    const StackShape shape{PixelFormat::I420, 96, 80, 3};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(Device::open(""), shape);
+    for (const unsigned t : {0U, 1U, 2U}) {
+        const TestStack input = noisy(t == 1 ? smooth_stack(shape, 1.0) : clean, 3.0, t);
+        TestStack stack = input;
+        denoise(denoiser, stack, {}, t == 1 ? 7 : 0);
+        if (t < 2)
+            EXPECT_EQ(stack.memory, input.memory);
+        else
+            EXPECT_LT(mean_square(stack, clean), 9.0 / 2 * 1.2);
+    }
+}
+
+/* Each plane of a rolling window comes in as many stacks as a sweep has planes; it counts once. */
+TEST(StackDenoiser, a_plane_that_comes_again_counts_once)
+{
+    const StackShape shape{PixelFormat::Gray8, 96, 80, 2};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(Device::open(""), shape);
+    TestStack first = noisy(clean, 3.0, 1), second = noisy(clean, 3.0, 2);
+    std::copy_n(first.memory.begin(), first.layout[1].offset, second.memory.begin()); /* plane 0 again */
+    const auto once = [&](TestStack stack, uint64_t sweep_of_plane_1) {
+        StackView view = stack.view();
+        view.identities = {PlaneIdentity{0, 0}, PlaneIdentity{sweep_of_plane_1, 1}};
+        denoiser.denoise(view, stack.memory, 0, {});
+        return stack;
+    };
+    once(first, 0);
+    const TestStack after = once(second, 1);
+    EXPECT_TRUE(std::equal(first.memory.begin(), first.memory.begin() + first.layout[1].offset,
+                           after.memory.begin()));
+    EXPECT_NEAR(denoiser.report().mean_sweeps, 1.5, 0.01);
+}
+
+TEST(StackDenoiser, what_is_forgotten_is_averaged_with_nothing)
+{
+    const StackShape shape{PixelFormat::Gray16, 96, 80, 2};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(Device::open(""), shape);
+    TestStack first = noisy(clean, 3.0, 1);
+    denoise(denoiser, first);
+    denoiser.forget();
+    const TestStack input = noisy(clean, 3.0, 2);
+    TestStack second = input;
+    denoise(denoiser, second);
+    EXPECT_EQ(second.memory, input.memory);
+}
+
+/* Rows of the stack may be padded, and what lies between them is not touched. */
+TEST(StackDenoiser, bytes_between_the_rows_stay)
+{
+    const StackShape shape{PixelFormat::Gray8, 70, 66, 2};
+    std::vector<std::byte> memory(100 + 96 * 66 * 2, std::byte{77});
+    const StackView view{shape, memory, {{100, 96}, {100 + 96 * 66, 96}}};
+    StackDenoiser denoiser(Device::open(""), shape);
+    for (unsigned t = 0; t < 3; t++) {
+        for (unsigned y = 0; y < 132; y++)
+            std::fill_n(memory.begin() + 100 + 96 * y, 70, static_cast<std::byte>(100 + t));
+        denoiser.denoise(view, memory, 0, {});
+    }
+    for (size_t i = 0; i < memory.size(); i++) {
+        const bool is_between = i < 100 || (i - 100) % 96 >= 70;
+        EXPECT_TRUE(!is_between || memory[i] == std::byte{77}) << i;
+    }
+}
