@@ -4,6 +4,9 @@
 
 #include "focalstack/focalstackalign.h"
 #include "focalstack/focalstackdemux.h"
+#ifdef HAVE_OPENCL
+#include "focalstack/focalstackdenoise.h"
+#endif
 #include "focalstack/focalstackmux.h"
 
 static gboolean plugin_init(GstPlugin *plugin)
@@ -12,6 +15,9 @@ static gboolean plugin_init(GstPlugin *plugin)
     registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
     registered |= GST_ELEMENT_REGISTER(focalstackdemux, plugin);
     registered |= GST_ELEMENT_REGISTER(focalstackalign, plugin);
+#ifdef HAVE_OPENCL
+    registered |= GST_ELEMENT_REGISTER(focalstackdenoise, plugin);
+#endif
     return registered;
 }
 

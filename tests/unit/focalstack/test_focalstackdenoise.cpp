@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "support.h"
+
+#include <algorithm>
+#include <gst/video/video.h>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace {
+
+constexpr int width = 96, height = 72, planes = 3;
+
+GstFocalStackInfo stack_info(const char *format)
+{
+    GstFocalStackInfo info;
+    info.planes = planes;
+    info.frame = video_info(format, width, height);
+    return info;
+}
+
+/* Grey of `level` with noise. */
+GstBuffer *new_stack(const GstFocalStackInfo &info, guint64 sequence, int level, unsigned seed)
+{
+    const gsize size = gst_focal_stack_info_get_size(&info);
+    GstBuffer *stack = gst_buffer_new_allocate(nullptr, size, nullptr);
+    GstMapInfo map;
+    gst_buffer_map(stack, &map, GST_MAP_WRITE);
+    std::mt19937 random(seed);
+    std::normal_distribution<float> noise(static_cast<float>(level), 5.0F);
+    std::generate_n(map.data, size,
+                    [&] { return static_cast<guint8>(std::clamp(noise(random), 0.0F, 255.0F)); });
+    gst_buffer_unmap(stack, &map);
+    gst_focal_stack_info_add_video_metas(&info, stack);
+    GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, sequence, planes);
+    meta->complete = TRUE;
+    GST_BUFFER_PTS(stack) = sequence * 40 * GST_MSECOND;
+    GST_BUFFER_DURATION(stack) = 40 * GST_MSECOND;
+    return stack;
+}
+
+std::vector<guint8> bytes_of(GstBuffer *buffer)
+{
+    GstMapInfo map;
+    gst_buffer_map(buffer, &map, GST_MAP_READ);
+    std::vector<guint8> bytes(map.data, map.data + map.size);
+    gst_buffer_unmap(buffer, &map);
+    return bytes;
+}
+
+/* Mean square of the distance from a level. */
+double noise_of(const std::vector<guint8> &bytes, int level)
+{
+    double sum = 0.0;
+    for (const guint8 byte : bytes)
+        sum += (byte - level) * (byte - level);
+    return sum / static_cast<double>(bytes.size());
+}
+
+class FocalStackDenoise : public testing::Test {
+protected:
+    void start(const char *format)
+    {
+        info_ = stack_info(format);
+        harness_.reset(gst_harness_new("focalstackdenoise"));
+        gst_harness_set_src_caps(harness_.get(), gst_focal_stack_info_to_caps(&info_));
+    }
+
+    Owned<GstBuffer> denoised(int level, unsigned seed)
+    {
+        EXPECT_EQ(gst_harness_push(harness_.get(), new_stack(info_, next_++, level, seed)), GST_FLOW_OK);
+        return Owned<GstBuffer>(gst_harness_pull(harness_.get()));
+    }
+
+    GstFocalStackInfo info_{};
+    Owned<GstHarness> harness_;
+    guint64 next_ = 0;
+};
+
+} // namespace
+
+TEST_F(FocalStackDenoise, metas_and_times_stay)
+{
+    start("I420");
+    denoised(100, 1);
+    const Owned<GstBuffer> stack = denoised(100, 2);
+    EXPECT_EQ(GST_BUFFER_PTS(stack.get()), 40 * GST_MSECOND);
+    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack.get());
+    ASSERT_NE(meta, nullptr);
+    EXPECT_EQ(meta->sequence, 1U);
+    EXPECT_NE(gst_buffer_get_video_meta_id(stack.get(), planes - 1), nullptr);
+}
+
+TEST_F(FocalStackDenoise, noise_falls_and_stats_tell_it)
+{
+    start("GRAY8");
+    for (unsigned seed = 0; seed < 7; seed++)
+        denoised(100, seed);
+    EXPECT_LT(noise_of(bytes_of(denoised(100, 7).get()), 100), 25.0 / 8 * 1.2);
+
+    GstStructure *taken = nullptr;
+    g_object_get(harness_->element, "stats", &taken, nullptr);
+    const Owned<GstStructure> stats(taken);
+    guint64 stacks = 0;
+    double sweeps = 0.0;
+    EXPECT_TRUE(gst_structure_get(stats.get(), "stacks", G_TYPE_UINT64, &stacks, "sweeps", G_TYPE_DOUBLE,
+                                  &sweeps, nullptr));
+    EXPECT_EQ(stacks, 8U);
+    EXPECT_GT(sweeps, 7.5);
+    const GValue *curve = gst_structure_get_value(stats.get(), "noise");
+    ASSERT_EQ(gst_value_array_get_size(curve), 16U);
+    EXPECT_NEAR(g_value_get_double(gst_value_array_get_value(curve, 6)), 5.0, 0.8);
+}
+
+TEST_F(FocalStackDenoise, a_stack_that_somebody_else_holds_is_not_changed)
+{
+    start("GRAY8");
+    denoised(100, 1);
+    const Owned<GstBuffer> held(new_stack(info_, next_++, 100, 2));
+    const std::vector<guint8> before = bytes_of(held.get());
+    gst_harness_push(harness_.get(), gst_buffer_ref(held.get()));
+    const Owned<GstBuffer> stack(gst_harness_pull(harness_.get()));
+    EXPECT_EQ(bytes_of(held.get()), before);
+    EXPECT_NE(bytes_of(stack.get()), before);
+}
+
+TEST_F(FocalStackDenoise, nothing_before_a_flush_is_averaged_with_what_comes_after)
+{
+    start("GRAY8");
+    denoised(100, 1);
+    gst_harness_push_event(harness_.get(), gst_event_new_flush_start());
+    gst_harness_push_event(harness_.get(), gst_event_new_flush_stop(TRUE));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(harness_.get(), gst_event_new_segment(&segment));
+    const Owned<GstBuffer> unchanged(new_stack(info_, next_, 100, 2));
+    EXPECT_EQ(bytes_of(denoised(100, 2).get()), bytes_of(unchanged.get()));
+}
+
+TEST_F(FocalStackDenoise, new_caps_begin_anew)
+{
+    start("GRAY8");
+    denoised(100, 1);
+    for (const char *format : {"RGB", "GRAY16_LE", "NV12"}) {
+        info_ = stack_info(format);
+        gst_harness_set_src_caps(harness_.get(), gst_focal_stack_info_to_caps(&info_));
+        const Owned<GstBuffer> unchanged(new_stack(info_, next_, 100, 2));
+        EXPECT_EQ(bytes_of(denoised(100, 2).get()), bytes_of(unchanged.get())) << format;
+    }
+}
+
+TEST_F(FocalStackDenoise, a_lost_plane_stays_as_it_is)
+{
+    start("GRAY8");
+    denoised(100, 1);
+    GstBuffer *stack = new_stack(info_, next_++, 100, 2);
+    gst_buffer_get_focal_stack_meta(stack)->missing = 2; /* plane 1 */
+    const std::vector<guint8> before = bytes_of(stack);
+    gst_harness_push(harness_.get(), stack);
+    const std::vector<guint8> after = bytes_of(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get());
+    const auto plane = static_cast<std::ptrdiff_t>(info_.frame.size);
+    EXPECT_FALSE(std::equal(before.begin(), before.begin() + plane, after.begin()));
+    EXPECT_TRUE(std::equal(before.begin() + plane, before.begin() + 2 * plane, after.begin() + plane));
+}
+
+TEST_F(FocalStackDenoise, frames_can_be_changed_while_it_plays)
+{
+    start("GRAY8");
+    for (unsigned seed = 0; seed < 4; seed++)
+        denoised(100, seed);
+    g_object_set(harness_->element, "frames", 1U, nullptr);
+    const Owned<GstBuffer> unchanged(new_stack(info_, next_, 100, 9));
+    EXPECT_EQ(bytes_of(denoised(100, 9).get()), bytes_of(unchanged.get()));
+}
+
+TEST_F(FocalStackDenoise, a_stack_that_is_too_short_is_an_error_that_says_so)
+{
+    start("GRAY8");
+    const Owned<GstBuffer> whole(new_stack(info_, 0, 100, 1));
+    GstBus *bus = gst_bus_new();
+    gst_element_set_bus(harness_->element, bus);
+    GstBuffer *part = gst_buffer_copy_region(whole.get(), GST_BUFFER_COPY_MEMORY, 0, 1000);
+    EXPECT_EQ(gst_harness_push(harness_.get(), part), GST_FLOW_ERROR);
+    EXPECT_EQ(count_messages(bus, GST_MESSAGE_ERROR), 1U);
+    gst_element_set_bus(harness_->element, nullptr);
+    gst_object_unref(bus);
+}
