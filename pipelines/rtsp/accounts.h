@@ -12,8 +12,9 @@ namespace dff {
 /* The role that may look at the mounts. */
 inline constexpr const char *viewer_role = "viewer";
 
-/* Who may connect, and how: the accounts by basic and digest, and the certificate. Null if anyone may,
- * unencrypted. Throws std::invalid_argument, with a text for the user, if the certificate cannot be read. */
+/* Who may connect, and how: the accounts by digest, and by basic where options.basic or a certificate allows
+ * it. Null if anyone may, unencrypted. Throws std::invalid_argument, with a text for the user, if the
+ * certificate or its key cannot be read. */
 ObjectPointer<GstRTSPAuth> make_auth(const ServerOptions &options);
 
 /* Lets viewers, and nobody else, look at what the factory makes. */

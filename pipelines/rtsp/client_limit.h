@@ -6,8 +6,9 @@
 
 namespace dff {
 
-/* Lets the server serve so many clients at a time; one more is answered 503 Service Unavailable. A client is
- * one that has set a stream up, and counts until its connection ends. */
+/* Lets the server serve so many clients at a time, 1 to most_clients of server_options.h; one more is
+ * answered 503 Service Unavailable. A client is one that has set a stream up, and counts until its connection
+ * ends. */
 void limit_clients(GstRTSPServer *server, unsigned max_clients);
 
 } // namespace dff

@@ -4,6 +4,7 @@
 
 #include "accounts.h"
 #include "client_limit.h"
+#include "host_address.h"
 #include "mount_media.h"
 
 #include <stdexcept>
@@ -93,9 +94,10 @@ void Server::clean_up_regularly()
 std::vector<std::string> Server::urls() const
 {
     g_autofree char *address = gst_rtsp_server_get_address(server_.get());
+    const std::string host = host_in_url(address);
     std::vector<std::string> urls;
     for (const std::string &path : paths_)
-        urls.push_back(scheme_ + "://" + address + ":" +
+        urls.push_back(scheme_ + "://" + host + ":" +
                        std::to_string(gst_rtsp_server_get_bound_port(server_.get())) + path);
     return urls;
 }

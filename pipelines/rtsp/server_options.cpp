@@ -39,6 +39,7 @@ struct RawOptions {
     int max_clients = ServerOptions().max_clients;
     char **accounts = nullptr;
     char *accounts_file = nullptr;
+    gboolean basic = FALSE;
     char *certificate = nullptr;
 
     RawOptions() = default;
@@ -62,12 +63,14 @@ void parse(RawOptions &raw, int argc, char **argv)
         {"port", 'p', 0, G_OPTION_ARG_INT, &raw.port, "Port to listen on, 0 to 65535; 0: any; default: 8554",
          "PORT"},
         {"max-clients", 'm', 0, G_OPTION_ARG_INT, &raw.max_clients,
-         "Clients at a time; one more is answered 503 Service Unavailable; default: 32", "N"},
+         "Clients at a time; 1 to 10000; one more is answered 503 Service Unavailable; default: 32", "N"},
         {"account", 'u', 0, G_OPTION_ARG_STRING_ARRAY, &raw.accounts,
          "Let in this user; may be given again. Others on this machine can read it: prefer --accounts",
          "USER:PASSWORD"},
         {"accounts", 'f', 0, G_OPTION_ARG_FILENAME, &raw.accounts_file,
          "Let in the users of this file: a line [accounts], then USER=PASSWORD lines", "FILE"},
+        {"basic", 'b', 0, G_OPTION_ARG_NONE, &raw.basic,
+         "Take passwords in the clear too, for clients without digest authentication", nullptr},
         {"certificate", 'c', 0, G_OPTION_ARG_FILENAME, &raw.certificate,
          "Serve rtsps:// with the certificate and key of this PEM file, media over TCP only", "FILE"},
         {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr},
@@ -112,8 +115,9 @@ void check(const ServerOptions &options)
 {
     if (options.port < 0 || options.port > 65535)
         throw std::invalid_argument("The port must lie between 0 and 65535");
-    if (options.max_clients < 1)
-        throw std::invalid_argument("At least one client must be let in");
+    if (options.max_clients < 1 || options.max_clients > most_clients)
+        throw std::invalid_argument("The number of clients must lie between 1 and " +
+                                    std::to_string(most_clients));
 }
 
 } // namespace
@@ -135,6 +139,7 @@ ServerOptions parse_options(int argc, char **argv)
         const size_t colon = text.find(':');
         add_account(options, text.substr(0, colon), colon == std::string::npos ? "" : text.substr(colon + 1));
     }
+    options.basic = raw.basic;
     if (raw.certificate)
         options.certificate = raw.certificate;
     check(options);

@@ -7,14 +7,18 @@
 
 namespace dff {
 
+/* Each takes a thread, and open files. */
+inline constexpr int most_clients = 10000;
+
 /* What the command line says. */
 struct ServerOptions {
     std::string launch; /* the source pipeline; see SourcePipeline */
     std::string address = "0.0.0.0";
     int port = 8554;
-    int max_clients = 32;
+    int max_clients = 32;                        /* up to most_clients */
     std::map<std::string, std::string> accounts; /* user -> password; empty: anyone may look */
-    std::string certificate;                     /* PEM file with certificate and key; empty: no TLS */
+    bool basic = false;      /* whether passwords may come in the clear; with a certificate they never do */
+    std::string certificate; /* PEM file with certificate and key; empty: no TLS */
 };
 
 /* Ends the program after --help. Throws std::invalid_argument, with a text for the user, if the options make

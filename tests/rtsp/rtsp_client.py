@@ -23,7 +23,8 @@ class Server:
 
     def __enter__(self):
         self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.port = int(re.search(r':(\d+)/', self.process.stdout.readline()).group(1))
+        self.first_url = self.process.stdout.readline().strip()
+        self.port = int(re.search(r':(\d+)/', self.first_url).group(1))
         return self
 
     def __exit__(self, *_):

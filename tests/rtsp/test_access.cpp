@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <gio/gio.h>
 #include <gtest/gtest.h>
 
 namespace {
@@ -57,6 +58,39 @@ TEST(Access, a_wrong_password_is_refused)
         EXPECT_NE(client.error().find("Unauthorized"), std::string::npos) << account;
     }
     EXPECT_EQ(server.count_in_log("The source is started"), 0U);
+}
+
+/* What the server says of how to show who one is: the first answer to somebody with these headers. */
+std::string answer(const ServerProcess &server, const std::string &headers = "")
+{
+    const std::string url = server.url("/depth"), host = url.substr(7, url.rfind('/') - 7);
+    g_autoptr(GSocketClient) client = g_socket_client_new();
+    g_autoptr(GSocketConnection) connection =
+        g_socket_client_connect_to_host(client, host.c_str(), 0, nullptr, nullptr);
+    if (!connection)
+        return "no connection to " + host;
+    const std::string request = "DESCRIBE " + url + " RTSP/1.0\r\nCSeq: 1\r\n" + headers + "\r\n";
+    g_output_stream_write_all(g_io_stream_get_output_stream(G_IO_STREAM(connection)), request.data(),
+                              request.size(), nullptr, nullptr, nullptr);
+    char text[4096] = {};
+    g_input_stream_read(g_io_stream_get_input_stream(G_IO_STREAM(connection)), text, sizeof text - 1, nullptr,
+                        nullptr);
+    return text;
+}
+
+TEST(Access, passwords_go_in_the_clear_only_where_that_was_asked_for)
+{
+    const std::string basic = "Authorization: Basic YW5uYTpzZWNyZXQ=\r\n"; /* anna:secret */
+    {
+        ServerProcess server(quick_depth, {"--account", "anna:secret"});
+        EXPECT_NE(answer(server).find("WWW-Authenticate: Digest"), std::string::npos) << answer(server);
+        EXPECT_EQ(answer(server).find("WWW-Authenticate: Basic"), std::string::npos) << answer(server);
+        EXPECT_NE(answer(server, basic).find("401 Unauthorized"), std::string::npos) << answer(server, basic);
+    }
+    ServerProcess server(quick_depth, {"--account", "anna:secret", "--basic"});
+    EXPECT_NE(answer(server).find("WWW-Authenticate: Digest"), std::string::npos) << answer(server);
+    EXPECT_NE(answer(server).find("WWW-Authenticate: Basic"), std::string::npos) << answer(server);
+    EXPECT_NE(answer(server, basic).find("200 OK"), std::string::npos) << answer(server, basic);
 }
 
 TEST(Access, one_client_too_many_is_told_so)

@@ -7,6 +7,7 @@
 #include "warm_up.h"
 
 #include <cmath>
+#include <filesystem>
 #include <gtest/gtest.h>
 
 namespace {
@@ -113,6 +114,7 @@ TEST(ServerOptions, nonsense_is_refused)
     EXPECT_THROW(parse({"stray"}), std::invalid_argument);
     EXPECT_THROW(parse({"--port", "70000"}), std::invalid_argument);
     EXPECT_THROW(parse({"--max-clients", "0"}), std::invalid_argument);
+    EXPECT_THROW(parse({"--max-clients", "2147483647"}), std::invalid_argument); /* INT_MAX */
     EXPECT_THROW(parse({"--account", "no-password"}), std::invalid_argument);
     EXPECT_THROW(parse({"--account", ":secret"}), std::invalid_argument);
     EXPECT_THROW(parse({"--accounts", "/no/such/file"}), std::invalid_argument);
@@ -140,6 +142,43 @@ TEST(Server, says_why_it_cannot_listen_or_encrypt)
     const size_t colon = url.rfind(':');
     options.port = std::stoi(url.substr(colon + 1));
     EXPECT_THROW(dff::Server(options, capture), std::runtime_error);
+}
+
+TEST(Server, a_certificate_without_its_key_is_refused_at_the_start)
+{
+    g_autofree char *folder = g_dir_make_tmp("dff-rtsp-XXXXXX", nullptr);
+    dff::ServerOptions options;
+    options.address = "127.0.0.1";
+    options.port = 0;
+    options.certificate = std::string(folder) + "/cert.pem";
+    const std::string command = std::string("cd ") + folder +
+                                " && openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=x -days 2 -keyout "
+                                "key.pem -out cert.pem 2>/dev/null && cat key.pem cert.pem >both.pem";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const auto capture = std::make_shared<dff::Capture>("videotestsrc name=depth");
+    try {
+        const dff::Server server(options, capture);
+        ADD_FAILURE() << "it starts";
+    } catch (const std::invalid_argument &error) {
+        EXPECT_NE(std::string(error.what()).find("private key"), std::string::npos) << error.what();
+    }
+    options.certificate = std::string(folder) + "/both.pem";
+    EXPECT_NO_THROW(dff::Server(options, capture));
+    std::filesystem::remove_all(folder);
+}
+
+/* The namespace of the tests has the loopback only. */
+TEST(Server, its_addresses_can_be_typed)
+{
+    const auto capture = std::make_shared<dff::Capture>("videotestsrc name=depth");
+    for (const auto &[address, host] : {std::pair("127.0.0.1", "127.0.0.1"), std::pair("::1", "[::1]"),
+                                        std::pair("0.0.0.0", "localhost"), std::pair("::", "localhost")}) {
+        dff::ServerOptions options;
+        options.address = address;
+        options.port = 0;
+        const std::string url = dff::Server(options, capture).urls().at(0);
+        EXPECT_EQ(url.rfind(std::string("rtsp://") + host + ":", 0), 0U) << url;
+    }
 }
 
 } // namespace

@@ -114,6 +114,10 @@ class Receivers(unittest.TestCase):
                     for value in nearest:  # the sweep spans 5 to 1 dioptres
                         self.assertTrue(195 <= value <= 1010, printed)
 
+    def test_bound_to_all_addresses_it_prints_one_that_others_reach(self):
+        with second_machine(), Server(f'{LIVE} ! identity name=planes', address='0.0.0.0') as server:
+            self.assertEqual(server.first_url, f'rtsp://10.0.0.1:{server.port}/planes')
+
     def test_one_machine_captures_for_another(self):
         with tempfile.TemporaryDirectory() as folder, second_machine() as there:
             received, expected = f'{folder}/received', f'{folder}/expected'
