@@ -3,6 +3,7 @@
 #include "client_limit.h"
 
 #include "gst_pointer.h"
+#include "log.h"
 
 #include <vector>
 
@@ -22,8 +23,15 @@ void remember(GstRTSPClient *, GstRTSPSession *session, gpointer sessions)
     static_cast<Sessions *>(sessions)->push_back(share(session));
 }
 
+const char *ip_of(GstRTSPClient *client)
+{
+    const GstRTSPConnection *connection = gst_rtsp_client_get_connection(client);
+    return connection ? gst_rtsp_connection_get_ip(connection) : "an unknown address";
+}
+
 void forget(GstRTSPClient *client, gpointer data)
 {
+    GST_INFO("The client at %s is gone", ip_of(client));
     const ObjectPointer<GstRTSPSessionPool> pool(gst_rtsp_client_get_session_pool(client));
     auto &sessions = *static_cast<Sessions *>(data);
     for (const auto &session : sessions)
@@ -38,11 +46,15 @@ GstRTSPStatusCode check_room(GstRTSPClient *client, GstRTSPContext *context, gpo
     const ObjectPointer<GstRTSPSessionPool> pool(gst_rtsp_client_get_session_pool(client));
     const bool has_room =
         gst_rtsp_session_pool_get_n_sessions(pool.get()) < gst_rtsp_session_pool_get_max_sessions(pool.get());
-    return has_room || context->session ? GST_RTSP_STS_OK : GST_RTSP_STS_SERVICE_UNAVAILABLE;
+    if (has_room || context->session)
+        return GST_RTSP_STS_OK;
+    g_message("The client at %s is one too many: see --max-clients", ip_of(client));
+    return GST_RTSP_STS_SERVICE_UNAVAILABLE;
 }
 
 void welcome(GstRTSPServer *, GstRTSPClient *client, gpointer)
 {
+    GST_INFO("A client comes from %s", ip_of(client));
     const auto destroy = [](gpointer sessions, GClosure *) { delete static_cast<Sessions *>(sessions); };
     auto *sessions = new Sessions;
     g_signal_connect(client, "pre-describe-request", G_CALLBACK(check_room), nullptr);

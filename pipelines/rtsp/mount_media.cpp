@@ -3,6 +3,7 @@
 #include "mount_media.h"
 
 #include "depth_attributes.h"
+#include "log.h"
 
 #include <gst/rtp/rtp.h>
 #include <mutex>
@@ -40,6 +41,8 @@ public:
     Feed(const Feed &) = delete;
     Feed &operator=(const Feed &) = delete;
 
+    const std::string &path() const { return mount_.path; }
+
     void describe(GstSDPMessage *sdp) const
     {
         const auto info = capture_->depth_info();
@@ -61,7 +64,7 @@ const char *const feed_key = "dff-feed";
 
 } // namespace
 
-/* A media that says in its SDP what the pixels of its depth mean. */
+/* A media that says in its SDP what the pixels of its depth mean, and in the log why it cannot be served. */
 struct DffMedia {
     GstRTSPMedia parent;
 };
@@ -70,13 +73,32 @@ struct DffMediaClass {
 };
 G_DEFINE_TYPE(DffMedia, dff_media, GST_TYPE_RTSP_MEDIA)
 
+static const Feed *feed_of(GstRTSPMedia *media)
+{
+    return static_cast<const Feed *>(g_object_get_data(G_OBJECT(media), feed_key));
+}
+
 static gboolean setup_sdp(GstRTSPMedia *media, GstSDPMessage *sdp, GstSDPInfo *info)
 {
     if (!GST_RTSP_MEDIA_CLASS(dff_media_parent_class)->setup_sdp(media, sdp, info))
         return FALSE;
-    if (const auto *feed = static_cast<const Feed *>(g_object_get_data(G_OBJECT(media), feed_key)))
+    if (const Feed *feed = feed_of(media))
         feed->describe(sdp);
     return TRUE;
+}
+
+/* Its clients are answered 503, which says nothing of the reason. */
+static gboolean handle_message(GstRTSPMedia *media, GstMessage *message)
+{
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+        g_autoptr(GError) error = nullptr;
+        g_autofree gchar *details = nullptr;
+        gst_message_parse_error(message, &error, &details);
+        const Feed *feed = feed_of(media);
+        g_warning("%s cannot be served: %s (%s)", feed ? feed->path().c_str() : "A mount", error->message,
+                  details ? details : "no details");
+    }
+    return GST_RTSP_MEDIA_CLASS(dff_media_parent_class)->handle_message(media, message);
 }
 
 static void dff_media_init(DffMedia *) {}
@@ -84,6 +106,7 @@ static void dff_media_init(DffMedia *) {}
 static void dff_media_class_init(DffMediaClass *klass)
 {
     klass->parent.setup_sdp = setup_sdp;
+    klass->parent.handle_message = handle_message;
 }
 
 struct DffMediaFactoryState {
@@ -156,6 +179,12 @@ static void add_header_extensions(GstBin *bin)
     }
 }
 
+static void end_feed(GstRTSPMedia *media)
+{
+    GST_INFO_OBJECT(media, "The last client is gone");
+    g_object_set_data(G_OBJECT(media), feed_key, nullptr);
+}
+
 static void configure(GstRTSPMediaFactory *factory, GstRTSPMedia *media)
 {
     GST_RTSP_MEDIA_FACTORY_CLASS(dff_media_factory_parent_class)->configure(factory, media);
@@ -165,8 +194,8 @@ static void configure(GstRTSPMediaFactory *factory, GstRTSPMedia *media)
 
     const GDestroyNotify destroy = [](gpointer feed) { delete static_cast<Feed *>(feed); };
     g_object_set_data_full(G_OBJECT(media), feed_key, new Feed(media, *state.mount, state.capture), destroy);
-    const auto end = +[](GstRTSPMedia *ended) { g_object_set_data(G_OBJECT(ended), feed_key, nullptr); };
-    g_signal_connect(media, "unprepared", G_CALLBACK(end), nullptr);
+    g_signal_connect(media, "unprepared", G_CALLBACK(end_feed), nullptr);
+    GST_INFO_OBJECT(media, "Made for %s", state.mount->path.c_str());
     const std::lock_guard lock(state.mutex);
     state.media.set(media);
 }

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "outlet.h"
 
+#include "log.h"
+
 namespace dff {
 
 namespace {
@@ -21,10 +23,14 @@ void Outlet::push(const CapturedFrame &frame)
 {
     GstAppSrc *appsrc = GST_APP_SRC(appsrc_.get());
     const GstClockTime base = gst_element_get_base_time(appsrc_.get());
-    if (GST_STATE(appsrc) != GST_STATE_PLAYING || frame.time < base)
+    if (GST_STATE(appsrc) != GST_STATE_PLAYING || frame.time < base) {
+        GST_DEBUG_OBJECT(appsrc, "Left out, as it does not play yet: %" GST_PTR_FORMAT, frame.buffer);
         return;
+    }
+    GST_LOG_OBJECT(appsrc, "%" GST_PTR_FORMAT, frame.buffer);
     if (frame.latency != latency_) {
         latency_ = frame.latency;
+        GST_INFO_OBJECT(appsrc, "The latency is %" GST_TIME_FORMAT, GST_TIME_ARGS(latency_));
         gst_app_src_set_latency(appsrc, latency_, GST_CLOCK_TIME_NONE);
     }
     GstBuffer *buffer = gst_buffer_copy(frame.buffer); /* the pixels are shared */

@@ -3,6 +3,7 @@
 #include "source_pipeline.h"
 
 #include "free_pad.h"
+#include "log.h"
 
 #include <gst/app/app.h>
 #include <stdexcept>
@@ -82,6 +83,7 @@ void SourcePipeline::add_output(const std::string &name, GstPad *pad)
     const ObjectPointer<GstPad> queue_pad(gst_element_get_static_pad(queue, "sink"));
     if (gst_pad_link_full(pad, queue_pad.get(), GST_PAD_LINK_CHECK_NOTHING) != GST_PAD_LINK_OK)
         throw std::invalid_argument("The output " + name + " of the source pipeline cannot be linked");
+    GST_INFO("The output %s is %s:%s", name.c_str(), GST_DEBUG_PAD_NAME(pad));
     sinks_[name] = share(sink);
     outputs_.insert(name);
 
@@ -111,6 +113,7 @@ void SourcePipeline::start(GMainContext *context, OnFrame on_frame, OnEnd on_end
 
     const bool live =
         gst_element_set_state(GST_ELEMENT(pipeline_.get()), GST_STATE_PAUSED) == GST_STATE_CHANGE_NO_PREROLL;
+    GST_INFO("The source is %s", live ? "live" : "not live: it is slowed down to its frame rate");
     for (const auto &[name, sink] : sinks_)
         g_object_set(sink.get(), "sync", !live, nullptr);
     if (gst_element_set_state(GST_ELEMENT(pipeline_.get()), GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE)

@@ -2,10 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "warm_up.h"
 
+#include "log.h"
 #include "source_pipeline.h"
 
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 
 namespace dff {
 
@@ -16,15 +18,45 @@ struct ContextUnref {
 };
 using Context = std::unique_ptr<GMainContext, ContextUnref>;
 
+/* What the frames of an output must be, for its mounts to show it. */
+const char *caps_of_output(const std::string &output)
+{
+    if (output == "depth")
+        return "video/x-raw, format=GRAY16_LE";
+    return output == "aif" ? "video/x-raw" : "ANY";
+}
+
+/* What is wrong with the caps that an output gives; empty if nothing is. */
+std::string fault_of(const std::string &output, GstCaps *caps)
+{
+    g_autoptr(GstCaps) wanted = gst_caps_from_string(caps_of_output(output));
+    if (gst_caps_is_subset(caps, wanted))
+        return "";
+    g_autofree char *text = gst_caps_to_string(caps);
+    return "The output " + output + " of the source pipeline must be " + caps_of_output(output) +
+           ", but is " + text;
+}
+
 /* Outputs that have given no frame yet. Any thread. */
 class SilentOutputs {
 public:
     explicit SilentOutputs(std::set<std::string> names) : names_(std::move(names)) {}
 
-    void remove(const std::string &name)
+    void remove(const std::string &name, GstCaps *caps)
     {
         const std::lock_guard lock(mutex_);
-        names_.erase(name);
+        if (names_.erase(name) == 0)
+            return;
+        GST_INFO("The output %s gives %" GST_PTR_FORMAT, name.c_str(), caps);
+        if (fault_.empty())
+            fault_ = fault_of(name, caps);
+    }
+
+    /* What is wrong with those that have; empty if nothing is. */
+    std::string fault() const
+    {
+        const std::lock_guard lock(mutex_);
+        return fault_;
     }
 
     bool empty() const
@@ -35,6 +67,7 @@ public:
 
 private:
     mutable std::mutex mutex_;
+    std::string fault_;
     std::set<std::string> names_;
 };
 
@@ -57,14 +90,16 @@ void warm_up(const std::string &launch, std::chrono::seconds patience)
     SilentOutputs silent(pipeline->outputs());
     pipeline->start(
         context.get(),
-        [&](const std::string &output, const CapturedFrame &) {
-            silent.remove(output);
+        [&](const std::string &output, const CapturedFrame &frame) {
+            silent.remove(output, frame.caps);
             g_main_context_wakeup(context.get());
         },
         [&](const std::string &reason) { failure = reason; });
     while (!silent.empty() && !failure)
         g_main_context_iteration(context.get(), TRUE);
     pipeline.reset(); /* its threads use what stands above */
+    if (const std::string fault = silent.fault(); !fault.empty())
+        throw std::invalid_argument(fault);
     if (!silent.empty())
         g_warning("The source could not be tried: %s. Clients wait until it gives frames", failure->c_str());
 }

@@ -82,7 +82,7 @@ TEST(WarmUp, lasts_until_each_output_has_given_a_frame)
 {
     const auto start = steady_clock::now();
     dff::warm_up("videotestsrc is-live=true ! video/x-raw,framerate=20/1 ! identity name=aif "
-                 "videotestsrc ! identity sleep-time=300000 name=depth",
+                 "videotestsrc ! video/x-raw,format=GRAY16_LE ! identity sleep-time=300000 name=depth",
                  seconds(60));
     EXPECT_GE(steady_clock::now() - start, milliseconds(300));
     EXPECT_LT(steady_clock::now() - start, seconds(50));
@@ -96,6 +96,22 @@ TEST(WarmUp, a_source_that_fails_ends_or_is_silent_is_not_waited_for)
     EXPECT_LT(steady_clock::now() - start, seconds(50));
     dff::warm_up("videotestsrc is-live=true ! valve drop=true ! identity name=depth", seconds(1));
     EXPECT_LT(steady_clock::now() - start, seconds(58));
+}
+
+TEST(WarmUp, a_depth_that_is_none_is_refused_by_name)
+{
+    try {
+        dff::warm_up("videotestsrc is-live=true ! video/x-raw,format=I420 ! identity name=depth",
+                     seconds(30));
+        FAIL() << "taken for depth";
+    } catch (const std::invalid_argument &error) {
+        EXPECT_NE(std::string(error.what()).find("depth"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("GRAY16_LE"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("I420"), std::string::npos) << error.what();
+    }
+    EXPECT_NO_THROW(dff::warm_up("videotestsrc ! video/x-raw,format=GRAY16_LE ! identity name=depth "
+                                 "videotestsrc ! video/x-raw,format=RGB ! identity name=aif",
+                                 seconds(30)));
 }
 
 dff::ServerOptions parse(std::vector<std::string> arguments)

@@ -184,6 +184,15 @@ TEST(Streams, one_capture_serves_all_and_stops_after_the_last)
     EXPECT_NE(third.next_buffer(), nullptr);
 }
 
+/* JPEG 2000 takes no picture of one pixel. */
+TEST(Streams, a_mount_that_cannot_be_served_says_why_in_the_log)
+{
+    ServerProcess server("videotestsrc is-live=true ! video/x-raw,format=GRAY16_LE,width=1,height=1 ! "
+                         "identity name=depth");
+    EXPECT_NE(Receiver(receive_depth(server, "tcp")).error().find("503"), std::string::npos);
+    EXPECT_TRUE(server.wait_for_log("/depth cannot be served: Failed to encode", 1));
+}
+
 /* Every kernel that runs leaves files in PoCL's cache. */
 TEST(Streams, kernels_are_compiled_before_the_server_is_ready)
 {
