@@ -10,49 +10,69 @@
  * or focal stacks.
  *
  * Link `depth`, `aif`, or both, before or while it runs; what is not linked is not computed. The request pad
- * `lightfield` gives pictures for a light-field display, where lightfieldcompose is installed.
+ * `lightfield` gives pictures for a light-field display, where lightfieldcompose is installed. The request
+ * pads `planes` and `stacks` give what the depth is computed from, to be recorded meanwhile.
  *
  * The properties of dffdepth and aifcompose are properties of the bin as well; all others are reached as
- * child properties: `mux::on-missing=repeat`, `source::...`, `lightfield::layout=quilt`.
+ * child properties: `mux::on-missing=repeat`, `source::...`, `lightfield::layout=quilt`. `stats` holds the
+ * `stats` of all its parts, those of the source included.
  *
  * ## Example launch line
  * |[
  * gst-launch-1.0 dffcamerabin name=camera source="lenssweeptestsrc num-buffers=60" \
  *     camera.depth ! depthcolorize ! videoconvert ! autovideosink \
  *     camera.aif ! videoconvert ! autovideosink
+ * gst-launch-1.0 dffcamerabin name=camera source="lenssweeptestsrc num-buffers=24" \
+ *     camera.depth ! fakesink camera.stacks ! dffmetapay ! gdppay ! filesink location=stacks.gdp
+ * gst-launch-1.0 dffcamerabin name=camera source="filesrc location=stacks.gdp ! gdpdepay ! dffmetadepay" \
+ *     camera.depth ! fakesink
  * ]|
  */
 #include "dffcamerabin.h"
 
 #include "aifcompose.h"
+#include "camera_source.h"
 #include "dffdepth.h"
 #include "forwarded_properties.h"
 
 #include <gst/dff/dff.h>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-GST_DEBUG_CATEGORY_STATIC(dff_camera_bin_debug);
+GST_DEBUG_CATEGORY(dff_camera_bin_debug);
 #define GST_CAT_DEFAULT dff_camera_bin_debug
 
 namespace {
 
-enum Property : guint { PropertySource = 1, FIRST_FORWARDED };
+enum Property : guint { PropertySource = 1, PropertyStats, FIRST_FORWARDED };
+
+/* A sink of planes stops at its first frame until the first stack is whole and everything has prerolled: two
+ * of the longest sweeps. Stacks and pictures are large: two are enough to keep both sides of a branch busy.
+ */
+constexpr guint planes_in_wait = 128;
+constexpr guint pictures_in_wait = 2;
 
 /* The parts of the graph. The bin owns the elements; one that is not installed is nullptr.
  *
- *   source ! mux ! stacks ! (depth_valve) ! dffdepth ! depths ! queue ! pad depth
+ *   source ! planes ! mux ! stacks ! (depth_valve) ! dffdepth ! depths ! queue ! pad depth
  *   stacks ! (stack_valve) ! queue ! aif.stack,  depths ! (aif_valve) ! queue ! aif.depth
  *   aifcompose ! pictures ! queue ! pad aif
- *   pictures ! queue ! videoconvert ! light.color,  depths ! queue ! light.depth,  light ! pad lightfield
  *
- * A valve is shut while nobody wants what lies behind it. The tees let the other branches go on when a pad is
- * not linked. */
+ * and, when their pads are requested,
+ *
+ *   pictures ! queue ! videoconvert ! light.color,  depths ! queue ! light.depth,  light ! queue ! pad
+ * lightfield planes ! queue ! pad planes,  stacks ! queue ! pad stacks
+ *
+ * A source of stacks goes straight to the tee stacks. A valve is shut while nobody wants what lies behind it.
+ * The tees let the other branches go on when a pad is not linked. */
 struct State {
-    std::string source_text = "lenssweeptestsrc";
+    std::string source_text = "lenssweeptestsrc"; /* under the object lock, as the source's thread reads it */
     std::string source_error;
     std::string missing; /* an element that is not installed, or empty */
     GstElement *source = nullptr;
+    GstElement *planes = nullptr;
     GstElement *mux = nullptr;
     GstElement *stacks = nullptr;
     GstElement *depth_valve = nullptr;
@@ -62,9 +82,10 @@ struct State {
     GstElement *depths = nullptr;
     GstElement *aifcompose = nullptr;
     GstElement *pictures = nullptr;
-    std::vector<GstElement *> light; /* what the pad lightfield needs */
+    std::map<std::string, std::vector<GstElement *>> requested; /* what a request pad needs, by its name */
     GstPad *depth_pad = nullptr;
     GstPad *aif_pad = nullptr;
+    std::optional<dff::SourceRoute> route;
 };
 
 } // namespace
@@ -83,6 +104,10 @@ static GstStaticPadTemplate aif_template =
     GST_STATIC_PAD_TEMPLATE("aif", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw"));
 static GstStaticPadTemplate lightfield_template =
     GST_STATIC_PAD_TEMPLATE("lightfield", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS("video/x-raw"));
+static GstStaticPadTemplate planes_template =
+    GST_STATIC_PAD_TEMPLATE("planes", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS("video/x-raw"));
+static GstStaticPadTemplate stacks_template = GST_STATIC_PAD_TEMPLATE(
+    "stacks", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_NAME));
 
 static GstElement *add(GstDffCameraBin *self, const char *factory, const char *name)
 {
@@ -94,12 +119,12 @@ static GstElement *add(GstDffCameraBin *self, const char *factory, const char *n
     return element;
 }
 
-/* Stacks are large: two are enough to keep both sides of a branch busy. */
-static GstElement *add_queue(GstDffCameraBin *self)
+static GstElement *add_queue(GstDffCameraBin *self, guint in_wait = pictures_in_wait)
 {
     GstElement *queue = add(self, "queue", nullptr);
     if (queue)
-        g_object_set(queue, "max-size-buffers", 2, "max-size-bytes", 0, "max-size-time", guint64{0}, nullptr);
+        g_object_set(queue, "max-size-buffers", in_wait, "max-size-bytes", 0, "max-size-time", guint64{0},
+                     nullptr);
     return queue;
 }
 
@@ -123,8 +148,10 @@ static GstElement *add_valve(GstDffCameraBin *self, const char *name)
 static void set_valves(GstDffCameraBin *self)
 {
     const State &state = *self->state;
-    const bool aif = gst_pad_is_linked(state.aif_pad) || !state.light.empty();
+    const bool aif = gst_pad_is_linked(state.aif_pad) || state.requested.contains("lightfield");
     const bool depth = gst_pad_is_linked(state.depth_pad) || aif;
+    GST_DEBUG_OBJECT(self, "Depth is %s, pictures are %s", depth ? "computed" : "not wanted",
+                     aif ? "composed" : "not wanted");
     g_object_set(state.depth_valve, "drop", !depth, nullptr);
     g_object_set(state.stack_valve, "drop", !aif, nullptr);
     g_object_set(state.aif_valve, "drop", !aif, nullptr);
@@ -152,6 +179,7 @@ static void build_graph(GstDffCameraBin *self)
     GstElement *stack_queue = add_queue(self), *aif_stack_queue = add_queue(self),
                *aif_depth_queue = add_queue(self), *depth_queue = add_queue(self),
                *aif_queue = add_queue(self);
+    state.planes = add_tee(self, "planes");
     state.mux = add(self, "focalstackmux", "mux");
     state.stacks = add_tee(self, "stacks");
     state.depth_valve = add_valve(self, "depth-valve");
@@ -164,6 +192,8 @@ static void build_graph(GstDffCameraBin *self)
     if (!state.missing.empty())
         return;
 
+    gst_element_link_pads(state.planes, "src_%u", state.mux, "sink"); /* not one of a plane */
+    gst_element_link_pads(state.mux, "src", state.stacks, "sink");
     gst_element_link_many(state.stacks, state.depth_valve, stack_queue, state.dffdepth, state.depths,
                           depth_queue, nullptr);
     gst_element_link_many(state.stacks, state.stack_valve, aif_stack_queue, nullptr);
@@ -175,33 +205,14 @@ static void build_graph(GstDffCameraBin *self)
     state.aif_pad = add_output(self, &aif_template, aif_queue);
 }
 
-/* Whether a source gives stacks by itself. */
-static bool gives_stacks(GstPad *pad)
+/* What comes from the source cannot be used. */
+static void post_source_fault(GstDffCameraBin *self, const std::string &reason)
 {
-    g_autoptr(GstCaps) caps = gst_pad_query_caps(pad, nullptr);
-    g_autoptr(GstCaps) stacks = gst_caps_from_string(GST_FOCAL_STACK_CAPS_NAME);
-    return !gst_caps_is_any(caps) && gst_caps_can_intersect(caps, stacks);
-}
-
-static void link_source(GstDffCameraBin *self)
-{
-    State &state = *self->state;
-    g_autoptr(GstPad) pad = gst_element_get_static_pad(state.source, "src");
-    if (!pad) {
-        state.source_error = "it has no source pad that is not linked";
-        return;
-    }
-    gst_element_unlink(state.mux, state.stacks);
-    const bool stacks = gives_stacks(pad);
-    if (!stacks)
-        gst_element_link(state.mux, state.stacks);
-    if (!gst_element_link(state.source, stacks ? state.stacks : state.mux)) {
-        g_autoptr(GstCaps) caps = gst_pad_query_caps(pad, nullptr);
-        g_autofree gchar *text = gst_caps_to_string(caps);
-        state.source_error = "its caps \"" + std::string(text) +
-                             "\" are no frames or focal stacks of a format and size that dffdepth takes";
-    }
-    gst_element_set_locked_state(state.mux, stacks); /* a mux without input has nothing to do */
+    GST_OBJECT_LOCK(self);
+    const std::string text = self->state->source_text;
+    GST_OBJECT_UNLOCK(self);
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                      ("source=\"%s\" cannot be used: %s", text.c_str(), reason.c_str()), (nullptr));
 }
 
 static void replace_source(GstDffCameraBin *self)
@@ -215,18 +226,15 @@ static void replace_source(GstDffCameraBin *self)
         state.source = nullptr;
     }
     state.source_error.clear();
-    g_autoptr(GError) error = nullptr;
-    const std::string description = state.source_text + " ! identity"; /* so that it may end in caps */
-    GstElement *source = gst_parse_bin_from_description_full(description.c_str(), TRUE, nullptr,
-                                                             GST_PARSE_FLAG_FATAL_ERRORS, &error);
-    if (!source) {
-        state.source_error = error ? error->message : "it cannot be parsed";
+    GstElement *source = dff::make_camera_source(state.source_text, state.source_error);
+    if (!source)
         return;
-    }
     gst_object_set_name(GST_OBJECT(source), "source");
     state.source = source;
     gst_bin_add(GST_BIN(self), source);
-    link_source(self);
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(source, "src");
+    state.source_error = state.route->connect(pad);
+    GST_INFO_OBJECT(self, "The source is %s", state.source_text.c_str());
 }
 
 static GstStateChangeReturn change_state(GstElement *element, GstStateChange transition)
@@ -242,45 +250,34 @@ static GstStateChangeReturn change_state(GstElement *element, GstStateChange tra
             return GST_STATE_CHANGE_FAILURE;
         }
         if (!state.source_error.empty()) {
-            GST_ELEMENT_ERROR(
-                self, RESOURCE, SETTINGS,
-                ("source=\"%s\" cannot be used: %s", state.source_text.c_str(), state.source_error.c_str()),
-                (nullptr));
+            post_source_fault(self, state.source_error);
             return GST_STATE_CHANGE_FAILURE;
         }
     }
     return GST_ELEMENT_CLASS(gst_dff_camera_bin_parent_class)->change_state(element, transition);
 }
 
-static GstPad *request_new_pad(GstElement *element, GstPadTemplate *, const gchar *, const GstCaps *)
+/* lightfieldcompose between the pictures, the depths and `queue`; its parts are `parts`, nothing if it is not
+ * installed. */
+static std::vector<GstElement *> add_light_field(GstDffCameraBin *self, GstElement *queue)
 {
-    auto *self = GST_DFF_CAMERA_BIN(element);
     State &state = *self->state;
-    if (!state.light.empty() || !state.missing.empty()) {
-        GST_WARNING_OBJECT(self, "The pad lightfield is in use already, or elements are missing");
-        return nullptr;
-    }
     GstElement *compose = add(self, "lightfieldcompose", "lightfield");
     if (!compose) {
         GST_ELEMENT_WARNING(self, CORE, MISSING_PLUGIN,
                             ("The pad lightfield needs the element lightfieldcompose: install its plug-in"),
                             (nullptr));
         state.missing.clear();
-        return nullptr;
+        return {};
     }
-    GstElement *colour_queue = add_queue(self), *depth_queue = add_queue(self), *queue = add_queue(self),
+    GstElement *colour_queue = add_queue(self), *depth_queue = add_queue(self),
                *convert = add(self, "videoconvert", nullptr);
-    state.light = {queue, compose, convert, colour_queue, depth_queue};
     gst_element_link_many(state.pictures, colour_queue, convert, nullptr);
     gst_element_link(state.depths, depth_queue);
     gst_element_link_pads(convert, "src", compose, "color");
     gst_element_link_pads(depth_queue, "src", compose, "depth");
     gst_element_link(compose, queue);
-    GstPad *pad = add_output(self, &lightfield_template, queue);
-    for (GstElement *part : state.light)
-        gst_element_sync_state_with_parent(part);
-    set_valves(self);
-    return pad;
+    return {compose, convert, colour_queue, depth_queue};
 }
 
 /* Takes an element out of the bin, and away from the tee before it. */
@@ -291,23 +288,84 @@ static void remove(GstDffCameraBin *self, GstElement *element)
     gst_element_set_state(element, GST_STATE_NULL);
     gst_bin_remove(GST_BIN(self), element);
     g_autoptr(GstElement) tee = before ? gst_pad_get_parent_element(before) : nullptr;
-    if (tee && (tee == self->state->pictures || tee == self->state->depths))
+    const State &state = *self->state;
+    if (tee && (tee == state.pictures || tee == state.depths || tee == state.planes || tee == state.stacks))
         gst_element_release_request_pad(tee, before);
+}
+
+static GstPad *request_new_pad(GstElement *element, GstPadTemplate *pad_template, const gchar *,
+                               const GstCaps *)
+{
+    auto *self = GST_DFF_CAMERA_BIN(element);
+    State &state = *self->state;
+    const std::string name = GST_PAD_TEMPLATE_NAME_TEMPLATE(pad_template);
+    if (state.requested.contains(name) || !state.missing.empty()) {
+        GST_WARNING_OBJECT(self, "The pad %s is in use already, or elements are missing", name.c_str());
+        return nullptr;
+    }
+    GstElement *queue = add_queue(self, name == "planes" ? planes_in_wait : pictures_in_wait);
+    std::vector<GstElement *> parts;
+    GstStaticPadTemplate *static_template = &lightfield_template;
+    if (name == "lightfield") {
+        parts = add_light_field(self, queue);
+        if (parts.empty()) {
+            remove(self, queue);
+            return nullptr;
+        }
+    } else {
+        const bool planes = name == "planes";
+        static_template = planes ? &planes_template : &stacks_template;
+        gst_element_link(planes ? state.planes : state.stacks, queue);
+    }
+    parts.insert(parts.begin(), queue);
+    state.requested[name] = parts;
+    GstPad *pad = add_output(self, static_template, queue);
+    for (GstElement *part : parts)
+        gst_element_sync_state_with_parent(part);
+    set_valves(self);
+    GST_INFO_OBJECT(self, "The pad %s is there", name.c_str());
+    return pad;
 }
 
 static void release_pad(GstElement *element, GstPad *pad)
 {
     auto *self = GST_DFF_CAMERA_BIN(element);
     State &state = *self->state;
+    const std::string name = GST_PAD_NAME(pad);
     g_autoptr(GstPad) target = gst_ghost_pad_get_target(GST_GHOST_PAD(pad));
     g_autoptr(GstElement) last = gst_pad_get_parent_element(target);
     gst_pad_set_active(pad, FALSE);
     gst_element_remove_pad(element, pad);
     remove(self, last);
-    for (GstElement *part : state.light)
+    for (GstElement *part : state.requested[name])
         remove(self, part);
-    state.light.clear();
+    state.requested.erase(name);
     set_valves(self);
+    GST_INFO_OBJECT(self, "The pad %s is gone", name.c_str());
+}
+
+/* The stats of all elements that have some, by their names. */
+static GstStructure *create_stats(GstDffCameraBin *self)
+{
+    GstStructure *all = gst_structure_new_empty("dffcamerabin-stats");
+    const auto add_stats = [](const GValue *item, gpointer structure) {
+        auto *element = G_OBJECT(g_value_get_object(item));
+        const GParamSpec *spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), "stats");
+        if (!spec || spec->value_type != GST_TYPE_STRUCTURE || GST_IS_BIN(element) ||
+            g_str_equal(GST_OBJECT_NAME(element), dff::source_end))
+            return;
+        GstStructure *stats = nullptr;
+        g_object_get(element, "stats", &stats, nullptr);
+        if (stats)
+            gst_structure_set(static_cast<GstStructure *>(structure), GST_OBJECT_NAME(element),
+                              GST_TYPE_STRUCTURE, stats, nullptr);
+        gst_clear_structure(&stats);
+    };
+    GstIterator *elements = gst_bin_iterate_recurse(GST_BIN(self));
+    while (gst_iterator_foreach(elements, add_stats, all) == GST_ITERATOR_RESYNC)
+        gst_iterator_resync(elements);
+    gst_iterator_free(elements);
+    return all;
 }
 
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
@@ -331,6 +389,10 @@ static void set_property(GObject *object, guint id, const GValue *value, GParamS
 static void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
     auto *self = GST_DFF_CAMERA_BIN(object);
+    if (id == PropertyStats) {
+        g_value_take_boxed(value, create_stats(self));
+        return;
+    }
     if (id != PropertySource) {
         dff::get_forwarded_property({self->state->dffdepth, self->state->aifcompose}, value, spec);
         return;
@@ -344,9 +406,11 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *s
 static void dispose(GObject *object)
 {
     auto *self = GST_DFF_CAMERA_BIN(object);
-    g_autoptr(GstPad) light_pad = gst_element_get_static_pad(GST_ELEMENT(self), "lightfield");
-    if (light_pad)
-        gst_element_release_request_pad(GST_ELEMENT(self), light_pad);
+    for (const char *name : {"lightfield", "planes", "stacks"}) {
+        g_autoptr(GstPad) pad = gst_element_get_static_pad(GST_ELEMENT(self), name);
+        if (pad)
+            gst_element_release_request_pad(GST_ELEMENT(self), pad);
+    }
     for (const char *name : {"depth", "aif"}) {
         g_autoptr(GstPad) pad = gst_element_get_static_pad(GST_ELEMENT(self), name);
         if (pad)
@@ -365,6 +429,8 @@ static void gst_dff_camera_bin_init(GstDffCameraBin *self)
 {
     self->state = new State;
     build_graph(self);
+    self->state->route.emplace(self->state->planes, self->state->mux, self->state->stacks,
+                               [self](const std::string &reason) { post_source_fault(self, reason); });
     replace_source(self);
 }
 
@@ -382,17 +448,26 @@ static void gst_dff_camera_bin_class_init(GstDffCameraBinClass *klass)
         object_class, PropertySource,
         g_param_spec_string(
             "source", "Source",
-            "What takes the planes: a bin description as in gst-launch-1.0 with one open source pad, of "
+            "What takes the planes: a bin description as in gst-launch-1.0 that ends in an open source pad, "
+            "of "
             "frames with a GstFocusMeta or of focal stacks",
             "lenssweeptestsrc",
             static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY)));
+    g_object_class_install_property(
+        object_class, PropertyStats,
+        g_param_spec_boxed(
+            "stats", "Statistics",
+            "The stats of the parts that have some, each a structure by the name of its element: mux, "
+            "dffdepth, aifcompose, and those of the source",
+            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
     dff::install_forwarded_properties(object_class, FIRST_FORWARDED,
                                       {GST_TYPE_DFF_DEPTH, GST_TYPE_AIF_COMPOSE});
 
     element_class->change_state = change_state;
     element_class->request_new_pad = request_new_pad;
     element_class->release_pad = release_pad;
-    for (GstStaticPadTemplate *pad_template : {&depth_template, &aif_template, &lightfield_template})
+    for (GstStaticPadTemplate *pad_template :
+         {&depth_template, &aif_template, &lightfield_template, &planes_template, &stacks_template})
         gst_element_class_add_static_pad_template(element_class, pad_template);
     gst_element_class_set_static_metadata(element_class, "Depth camera", "Source/Video",
                                           "Depth and all-in-focus pictures of a camera with a swept focus",

@@ -202,9 +202,135 @@ TEST(DffCameraBin, goes_away_with_every_pad_in_use)
         g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL));
     {
         const TestPipeline pipeline(camera(planes) + " camera.depth ! fakesink camera.aif ! fakesink" +
+                                    " camera.planes ! fakesink camera.stacks ! fakesink" +
                                     (factory ? " camera.lightfield ! fakesink" : ""));
     }
     g_log_set_always_fatal(fatal);
+}
+
+/* Depth of a recording, made while the same depth was computed. */
+class Recordings : public testing::TestWithParam<std::string> {};
+
+TEST_P(Recordings, give_the_same_depth_again)
+{
+    const std::string path = write_file(GetParam(), {});
+    Output live;
+    {
+        TestPipeline pipeline(camera(planes) + depth_out + "camera." + GetParam() +
+                              " ! dffmetapay ! gdppay ! filesink location=" + path);
+        pipeline.play();
+        live = collect(pipeline, "depth");
+        EXPECT_TRUE(pipeline.wait().end_of_stream);
+    }
+    TestPipeline again(camera("filesrc location=" + path + " ! gdpdepay ! dffmetadepay") + depth_out);
+    again.play();
+    const Output replayed = collect(again, "depth");
+    EXPECT_EQ(replayed.frames.size(), 3u);
+    EXPECT_EQ(replayed.frames, live.frames);
+    EXPECT_EQ(replayed.sequences, live.sequences);
+    std::remove(path.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Recordings, testing::Values("planes", "stacks"),
+                         [](const auto &instance) { return instance.param; });
+
+TEST(DffCameraBin, a_demuxer_finds_its_link)
+{
+    const std::string path = write_file("demuxer", {});
+    const Outcome outcome = run("videotestsrc num-buffers=8 pattern=ball ! video/x-raw,format=I420,width=96,"
+                                "height=96,framerate=10/1 ! matroskamux ! filesink location=" +
+                                path);
+    EXPECT_TRUE(outcome.end_of_stream) << outcome.error;
+    TestPipeline pipeline(camera("filesrc location=" + path + " ! matroskademux ! lenssweeptag planes=4") +
+                          depth_out);
+    pipeline.play();
+    EXPECT_EQ(collect(pipeline, "depth").frames.size(), 2u);
+    std::remove(path.c_str());
+}
+
+TEST(DffCameraBin, frames_and_stacks_follow_each_other_in_one_bin)
+{
+    const std::string path = write_file("in-turn", {});
+    EXPECT_TRUE(
+        run(planes + " ! focalstackmux ! dffmetapay ! gdppay ! filesink location=" + path).end_of_stream);
+    TestPipeline pipeline(camera(planes) + depth_out);
+    for (const std::string &source : {"filesrc location=" + path + " ! gdpdepay ! dffmetadepay", planes,
+                                      planes + " ! focalstackmux", planes}) {
+        g_object_set(pipeline.element("camera"), "source", source.c_str(), nullptr);
+        for (int round = 0; round < 2; round++) {
+            pipeline.play();
+            EXPECT_EQ(collect(pipeline, "depth").frames.size(), 3u) << source << ", round " << round;
+            pipeline.stop();
+        }
+    }
+    std::remove(path.c_str());
+}
+
+TEST(DffCameraBin, stats_are_those_of_all_its_parts)
+{
+    TestPipeline pipeline(camera(planes + " ! focalstackmux name=own ! focalstackdemux") + depth_out);
+    pipeline.play();
+    EXPECT_EQ(collect(pipeline, "depth").frames.size(), 3u);
+    GstStructure *stats = nullptr;
+    g_object_get(pipeline.element("camera"), "stats", &stats, nullptr);
+    ASSERT_NE(stats, nullptr);
+    for (const auto &[name, field, count] :
+         {std::tuple("mux", "stacks", 3u), std::tuple("own", "frames", 18u),
+          std::tuple("dffdepth", "stacks", 3u), std::tuple("aifcompose", "pictures", 0u)}) {
+        g_autoptr(GstStructure) part = nullptr;
+        guint64 value = 0;
+        ASSERT_TRUE(gst_structure_get(stats, name, GST_TYPE_STRUCTURE, &part, nullptr)) << name;
+        EXPECT_TRUE(gst_structure_get_uint64(part, field, &value)) << name;
+        EXPECT_EQ(value, count) << name;
+    }
+    gst_structure_free(stats);
+}
+
+TEST(DffCameraBin, planes_and_stacks_can_be_taken_and_let_go_while_it_runs)
+{
+    TestPipeline pipeline(camera("lenssweeptestsrc planes=6 is-live=true rate=10 ! "
+                                 "video/x-raw,format=I420,width=160,height=120") +
+                          " camera.depth ! appsink name=depth sync=false max-buffers=1 drop=true "
+                          "appsink name=tap sync=false max-buffers=1 drop=true async=false");
+    pipeline.play();
+    GstElement *bin = pipeline.element("camera"), *tap = pipeline.element("tap");
+    const guint16 children = GST_BIN_NUMCHILDREN(bin);
+    for (const char *name : {"planes", "stacks", "planes", "stacks"}) {
+        unit_of_first(pipeline);
+        g_autoptr(GstPad) pad = gst_element_request_pad_simple(bin, name);
+        ASSERT_NE(pad, nullptr) << name;
+        g_autoptr(GstPad) sink = gst_element_get_static_pad(tap, "sink");
+        ASSERT_EQ(gst_pad_link(pad, sink), GST_PAD_LINK_OK) << name;
+        GstSample *sample = pipeline.pull("tap");
+        EXPECT_NE(sample, nullptr) << name;
+        if (sample)
+            gst_sample_unref(sample);
+        gst_pad_unlink(pad, sink);
+        gst_element_release_request_pad(bin, pad);
+        unit_of_first(pipeline); /* goes on */
+        EXPECT_EQ(GST_BIN_NUMCHILDREN(bin), children) << name;
+    }
+    pipeline.stop();
+}
+
+TEST(DffCameraBin, planes_of_a_source_of_stacks_are_refused)
+{
+    TestPipeline pipeline(camera(planes) + "camera.depth ! fakesink camera.planes ! fakesink");
+    g_object_set(pipeline.element("camera"), "source", (planes + " ! focalstackmux").c_str(), nullptr);
+    pipeline.play();
+    const Outcome outcome = pipeline.wait();
+    EXPECT_NE(outcome.error.find("planes"), std::string::npos) << outcome.error;
+}
+
+TEST(DffCameraBin, pictures_too_small_are_refused_with_the_limits)
+{
+    const Outcome outcome =
+        run(camera("videotestsrc num-buffers=8 ! video/x-raw,format=I420,width=32,height=32 ! "
+                   "lenssweeptag planes=4") +
+                "camera.depth ! fakesink",
+            20);
+    for (const char *words : {"width=(int)32", "64x64", "8192x8192"})
+        EXPECT_NE(outcome.error.find(words), std::string::npos) << outcome.error;
 }
 
 TEST(DffCameraBin, a_source_that_cannot_be_used_is_named)
