@@ -4,39 +4,47 @@
 #
 # pipelines/demo.sh          builds the plug-ins, sweeps the focus of a simulated camera, and leaves the all-in-focus
 #                            picture, the depth and a video of both in demo/
-# pipelines/demo.sh FOLDER   the same for photographs of one focus sweep: PNG or JPEG, all of one size, sorted by name,
-#                            the nearest plane first; aligned before anything else
+# pipelines/demo.sh FOLDER   the same for photographs of one focus sweep: PNG, JPEG or TIFF, all of one size, the nearest
+#                            plane first as people count their names; aligned before anything else
 #
 # Installs what is missing if it is root, and says what to install if it is not.
 set -euo pipefail
-verdict="FAILED, see above"
-trap 'echo "demo: $verdict"' EXIT
-
-photos=${1:+$(realpath -- "$1")}
+photos=${1:+$(realpath -m -- "$1")}
 cd "$(dirname "$0")/.."
 . pipelines/setup.sh
 
-planes=10 stacks=30 width=640 height=480 rate=25
+verdict="FAILED, see above"
+finish() {
+    rm -rf demo/frames
+    echo "demo: $verdict"
+}
+trap finish EXIT
 
 fail() {
     verdict="FAILED: $*"
     exit 1
 }
 
+planes=10 stacks=30 width=640 height=480 rate=25
+patience=1800 # seconds for a pipeline
+
 # launch PIPELINE: runs it to its end; its messages are shown if it fails, and kept in demo/gst-launch.log.
 launch() {
     # shellcheck disable=SC2086  # gst-launch takes the pipeline word by word
-    timeout 600 gst-launch-1.0 -f $1 >demo/gst-launch.log 2>&1 &
-    local process=$!
+    timeout "$patience" gst-launch-1.0 -f $1 >demo/gst-launch.log 2>&1 &
+    local process=$! status=0
     # gst-launch-1.0 1.22 may wait for ever after an error that comes early.
     while kill -0 $process 2>/dev/null; do
         sleep 0.2
         ! grep -q '^ERROR' demo/gst-launch.log || kill $process 2>/dev/null || true
     done
-    wait $process || {
+    wait $process || status=$?
+    if [ $status -ne 0 ]; then
         cat demo/gst-launch.log
-        fail "gst-launch-1.0 did not reach the end"
-    }
+        [ $status -ne 124 ] || fail "the pipeline took longer than $((patience / 60)) minutes"
+        fail "$(sed -nE 's/^(ERROR: from element [^ ]*|WARNING: erroneous pipeline): //p' demo/gst-launch.log | head -n 1 | grep . ||
+            echo "gst-launch-1.0 ended with status $status")"
+    fi
     grep -E '^WARNING' demo/gst-launch.log || true
 }
 
@@ -60,7 +68,7 @@ pictures() {
     if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
         window="v. ! queue ! videoconvert ! autovideosink sync=false"
     fi
-    echo "c. ! videoconvert ! tee name=a
+    echo "c. ! videoconvert ! video/x-raw,format={GRAY16_BE,GRAY8,RGB} ! tee name=a
         a. ! queue ! pngenc ! multifilesink location=demo/all-in-focus.png
         d. ! queue ! depthcolorize ! videoconvert ! tee name=m
         m. ! queue ! pngenc ! multifilesink location=demo/depth.png
@@ -83,58 +91,42 @@ simulated_sweep() {
     launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux" linear) $(pictures "")"
 }
 
-# photo_size FILE DECODER: WIDTHxHEIGHT
-photo_size() {
-    timeout 60 gst-launch-1.0 -v filesrc "location=\"$1\"" ! "$2" ! fakesink 2>/dev/null |
-        sed -nE '/:src: caps = video/s/.*width=\(int\)([0-9]+), height=\(int\)([0-9]+).*/\1x\2/p' | head -n 1
+# read_photographs: their frames to demo/frames, and what they are to width, height and planes.
+read_photographs() {
+    say "Looking at the photographs in $photos, the nearest focus first:"
+    mkdir -p demo/frames
+    pipelines/photographs.py "$photos" demo/frames 2>demo/photographs.log ||
+        fail "$(tail -n 1 demo/photographs.log)"
+    read -r width height < <(sed -E 's/.*width=([0-9]+),height=([0-9]+).*/\1 \2/' demo/frames/caps)
+    planes=$(find demo/frames -name '[0-9][0-9]' | wc -l)
 }
 
 photographs() {
-    local decoder=pngdec type=image/png files jpegs first="" size number=0 file
-    shopt -s nullglob nocaseglob
-    files=("$photos"/*.png) jpegs=("$photos"/*.jpg "$photos"/*.jpeg)
-    if [ ${#files[@]} -eq 0 ]; then
-        decoder=jpegdec type=image/jpeg files=("${jpegs[@]}")
-    elif [ ${#jpegs[@]} -gt 0 ]; then
-        fail "$photos holds both PNG and JPEG pictures; keep the one kind or the other"
-    fi
-    planes=${#files[@]}
-    [ "$planes" -ge 2 ] || fail "$photos holds $planes PNG or JPEG pictures; a focus sweep has 2 to 64"
-    [ "$planes" -le 64 ] || fail "$photos holds $planes pictures; a focus sweep has 2 to 64"
-    say "Looking at $planes photographs in $photos"
-    local links
-    links=$(mktemp -d)
-    for file in "${files[@]}"; do
-        size=$(photo_size "$file" "$decoder")
-        [ -n "$size" ] || fail "$file cannot be read as ${type#image/}"
-        : "${first:=$size}"
-        [ "$size" = "$first" ] || fail "$file is $size and ${files[0]} is $first; all must have one size"
-        ln -s "$file" "$links/$(printf %02d "$number")"
-        number=$((number + 1))
-    done
+    local size=${width}x$height caps
+    caps=$(cat demo/frames/caps)
     # Panels of the video are at most 960 pixels wide, and even.
-    width=${first%x*} height=${first#*x}
     if [ "$width" -gt 960 ]; then
         height=$((height * 960 / width)) width=960
     fi
     width=$((width / 2 * 2)) height=$((height / 2 * 2))
 
     # Photographs lie farther apart in focus than the planes of a video sweep: hence blend=sharp.
-    say "Aligning $planes photographs of $first, then depth and all-in-focus"
-    launch "$(graph "multifilesrc location=$links/%02d stop-index=$((planes - 1)) caps=$type,framerate=$planes/1 ! $decoder !
-        videoconvert ! lenssweeptag planes=$planes ! focalstackmux ! focalstackalign" sharp) $(pictures "imagefreeze num-buffers=75 !")"
+    say "Aligning $planes photographs of $size, then depth and all-in-focus"
+    launch "$(graph "multifilesrc location=demo/frames/%02d stop-index=$((planes - 1)) caps=$caps,framerate=$planes/1 !
+        lenssweeptag planes=$planes ! focalstackmux ! focalstackalign" sharp) $(pictures "imagefreeze num-buffers=75 !")"
     result="1 stack of $planes photographs in $(seconds | xargs printf '%.1f') s"
-    rm -r "$links"
 }
 
-[ -z "$photos" ] || [ -d "$photos" ] || fail "$1 is not a folder"
+[ $# -le 1 ] || fail "there are $# arguments; it takes one folder, in quotes if its name has spaces"
+[ -z "$photos" ] || [ -d "$photos" ] || fail "$photos is not a folder"
 say "Checking that every package is installed"
 install_missing "${run_packages[@]}" "${build_packages[@]}" || fail "packages are missing"
+mkdir -p demo
+rm -rf demo/*
+[ -z "$photos" ] || read_photographs
 say "Building in build/"
 build build --buildtype=release -Dtests=disabled || fail "the build"
 enter build
-mkdir -p demo
-rm -f demo/*
 
 if [ -n "$photos" ]; then
     photographs
@@ -146,4 +138,4 @@ for file in all-in-focus.png depth.png side-by-side.webm; do
     [ -s "demo/$file" ] || fail "demo/$file was not written"
     say "$PWD/demo/$file"
 done
-verdict="OK, $result, pictures and video in $PWD/demo"
+verdict="OK, $result, $((SECONDS / 60)) min $((SECONDS % 60)) s in all, pictures and video in $PWD/demo"

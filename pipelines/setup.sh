@@ -6,7 +6,7 @@
 run_packages=(
     gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
     gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd
-    glib-networking)
+    glib-networking python3-openimageio)
 build_packages=(
     build-essential pkg-config meson ninja-build
     libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgstrtspserver-1.0-dev gobject-introspection libgirepository1.0-dev
@@ -52,10 +52,21 @@ install_missing() {
             { fflush() }'
 }
 
+# built_here FOLDER: whether Meson configured the folder where it is now, and not a checkout that was copied or moved.
+built_here() {
+    python3 -c 'import json, os, sys
+places = json.load(open(sys.argv[1] + "/meson-info/meson-info.json"))["directories"]
+sys.exit(not (os.path.exists(places["build"]) and os.path.samefile(places["build"], sys.argv[1])))' "$1" 2>/dev/null
+}
+
 # build FOLDER OPTION...: configures the folder, once, with these Meson options, and compiles.
 build() {
     local folder=$1
     shift
+    if [ -f "$folder/build.ninja" ] && ! built_here "$folder"; then
+        say "$folder was built in another place: anew"
+        rm -r "$folder"
+    fi
     mkdir -p "$folder"
     if [ ! -f "$folder/build.ninja" ]; then
         meson setup "$folder" "$@" >"$folder/setup.log" 2>&1 || { cat "$folder/setup.log"; return 1; }
