@@ -16,15 +16,30 @@
 #include <string>
 #include <vector>
 
-/* One pad's next frame, its rows packed; empty at the end of the stream. */
+/* The next sample of a sink; nullptr at the end of the stream, and when there is an error, which goes to `failure`.
+ * Who waits without looking at the bus waits for ever for a source that cannot start. */
+static GstSample *next_sample(GstElement *sink, GstBus *bus, GstMessage **failure)
+{
+    while (!*failure) {
+        if (GstSample *sample = gst_app_sink_try_pull_sample(GST_APP_SINK(sink), 100 * GST_MSECOND))
+            return sample;
+        *failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+        if (gst_app_sink_is_eos(GST_APP_SINK(sink)))
+            break;
+    }
+    return nullptr;
+}
+
+/* A sample's frame, its rows packed; empty without a sample. */
 struct Frame {
     int width = 0, height = 0;
     std::vector<guint8> bytes;
     GstDepthInfo depth{}; /* of depth frames */
 
-    explicit Frame(GstElement *sink)
+    /* Takes the sample. */
+    explicit Frame(GstSample *taken)
     {
-        g_autoptr(GstSample) sample = gst_app_sink_pull_sample(GST_APP_SINK(sink));
+        g_autoptr(GstSample) sample = taken;
         GstVideoInfo info;
         GstVideoFrame frame;
         if (!sample || !gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
@@ -67,9 +82,10 @@ int main(int argc, char **argv)
 
     for (const std::string &source : sources) {
         g_object_set(camera, "source", source.c_str(), nullptr);
-        gst_element_set_state(pipeline, GST_STATE_PLAYING);
-        for (int count = 0;; count++) {
-            const Frame depth(depth_sink), aif(aif_sink);
+        const bool starts = gst_element_set_state(pipeline, GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE;
+        g_autoptr(GstMessage) failure = nullptr;
+        for (int count = 0; starts; count++) {
+            const Frame depth(next_sample(depth_sink, bus, &failure)), aif(next_sample(aif_sink, bus, &failure));
             if (depth.bytes.empty() || aif.bytes.empty())
                 break;
             const size_t middle = static_cast<size_t>(depth.height / 2 * depth.width + depth.width / 2);
@@ -80,11 +96,17 @@ int main(int argc, char **argv)
             if (count == 2) /* any property of dffdepth and aifcompose can change while it runs */
                 gst_util_set_object_arg(G_OBJECT(camera), "blend", "sharp");
         }
-        g_autoptr(GstMessage) failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+        if (!failure)
+            failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
         gst_element_set_state(pipeline, GST_STATE_NULL);
         if (failure) {
-            gst_message_parse_error(failure, &error, nullptr);
-            g_printerr("%s\n", error->message);
+            g_autofree gchar *details = nullptr;
+            gst_message_parse_error(failure, &error, &details);
+            g_printerr("%s (%s)\n", error->message, details);
+            return 1;
+        }
+        if (!starts) {
+            g_printerr("The source does not start: %s\n", source.c_str());
             return 1;
         }
     }

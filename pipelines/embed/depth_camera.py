@@ -28,9 +28,27 @@ def pixels(sample, dtype, channels):
     return packed.view(dtype).reshape(info.height, info.width, channels)
 
 
-def frames(depth_sink, aif_sink):
+class Failure(Exception):
+    """What a pipeline said of its end."""
+
+
+def next_sample(sink, bus):
+    """The next sample, None at the end of the stream. Raises what the bus says: who waits without looking there waits for
+    ever for a source that cannot start."""
+    while True:
+        if sample := sink.try_pull_sample(Gst.SECOND // 10):
+            return sample
+        if failure := bus.pop_filtered(Gst.MessageType.ERROR):
+            error, details = failure.parse_error()
+            raise Failure(f'{error.message} ({details})')
+        if sink.is_eos():
+            return None
+
+
+def frames(pipeline):
     """Each depth map in millimetres (0 is unknown), its meta, and its picture in RGB."""
-    while (depth := depth_sink.pull_sample()) and (aif := aif_sink.pull_sample()):
+    depth_sink, aif_sink, bus = pipeline.get_by_name('depth'), pipeline.get_by_name('aif'), pipeline.get_bus()
+    while (depth := next_sample(depth_sink, bus)) and (aif := next_sample(aif_sink, bus)):
         yield pixels(depth, '<u2', 1)[:, :, 0], GstDff.buffer_get_depth_meta(depth.get_buffer()), pixels(aif, 'u1', 3)
 
 
@@ -43,20 +61,22 @@ def main():
 
     for source in sys.argv[1:] or ['lenssweeptestsrc num-buffers=60 near=5 far=0.5']:
         camera.props.source = source
-        pipeline.set_state(Gst.State.PLAYING)
-        both = frames(pipeline.get_by_name('depth'), pipeline.get_by_name('aif'))
-        for count, (millimetres, meta, picture) in enumerate(both):
-            middle = millimetres.shape[0] // 2, millimetres.shape[1] // 2
-            print(f'sweep {meta.sweep} of {meta.near:g} to {meta.far:g} dioptres: {millimetres[middle]} mm, '
-                  f'colour {picture[middle][0]} {picture[middle][1]} {picture[middle][2]}')
-            if count == 2:  # any property of dffdepth and aifcompose can change while it runs
-                Gst.util_set_object_arg(camera, 'blend', 'sharp')
-        failure = pipeline.get_bus().pop_filtered(Gst.MessageType.ERROR)
-        pipeline.set_state(Gst.State.NULL)
-        if failure:
-            return failure.parse_error()[0].message
-    return 0
+        try:
+            started = pipeline.set_state(Gst.State.PLAYING)
+            for count, (millimetres, meta, picture) in enumerate(frames(pipeline)):
+                middle = millimetres.shape[0] // 2, millimetres.shape[1] // 2
+                print(f'sweep {meta.sweep} of {meta.near:g} to {meta.far:g} dioptres: {millimetres[middle]} mm, '
+                      f'colour {picture[middle][0]} {picture[middle][1]} {picture[middle][2]}')
+                if count == 2:  # any property of dffdepth and aifcompose can change while it runs
+                    Gst.util_set_object_arg(camera, 'blend', 'sharp')
+            if started == Gst.StateChangeReturn.FAILURE:
+                raise Failure(f'The source does not start: {source}')
+        finally:
+            pipeline.set_state(Gst.State.NULL)
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    try:
+        main()
+    except Failure as failure:
+        sys.exit(str(failure))

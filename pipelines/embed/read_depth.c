@@ -31,9 +31,25 @@ static void print_middle(GstSample *sample)
     gst_video_frame_unmap(&frame);
 }
 
+/* The next sample of a sink; NULL at the end of the stream, and when there is an error, which goes to `failure`. Who waits
+ * without looking at the bus waits for ever for a source that cannot start. */
+static GstSample *next_sample(GstElement *sink, GstBus *bus, GstMessage **failure)
+{
+    while (!*failure) {
+        GstSample *sample = gst_app_sink_try_pull_sample(GST_APP_SINK(sink), 100 * GST_MSECOND);
+        if (sample)
+            return sample;
+        *failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+        if (gst_app_sink_is_eos(GST_APP_SINK(sink)))
+            break;
+    }
+    return NULL;
+}
+
 int main(int argc, char **argv)
 {
     GError *error = NULL;
+    GstMessage *failure = NULL;
     GstSample *sample;
 
     gst_init(&argc, &argv);
@@ -46,22 +62,27 @@ int main(int argc, char **argv)
     }
     GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline), "depth");
     GstBus *bus = gst_element_get_bus(pipeline);
-    gst_element_set_state(pipeline, GST_STATE_PLAYING);
-    while ((sample = gst_app_sink_pull_sample(GST_APP_SINK(sink)))) {
+    gboolean starts = gst_element_set_state(pipeline, GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE;
+    while ((sample = next_sample(sink, bus, &failure))) {
         print_middle(sample);
         gst_sample_unref(sample);
     }
 
-    GstMessage *failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    if (!failure)
+        failure = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
     if (failure) {
-        gst_message_parse_error(failure, &error, NULL);
-        g_printerr("%s\n", error->message);
+        gchar *details = NULL;
+        gst_message_parse_error(failure, &error, &details);
+        g_printerr("%s (%s)\n", error->message, details);
         g_error_free(error);
+        g_free(details);
         gst_message_unref(failure);
+    } else if (!starts) {
+        g_printerr("The pipeline does not start\n");
     }
     gst_element_set_state(pipeline, GST_STATE_NULL);
     gst_object_unref(bus);
     gst_object_unref(sink);
     gst_object_unref(pipeline);
-    return failure != NULL;
+    return !starts || failure != NULL;
 }

@@ -25,19 +25,34 @@ def metres(sample):
     return meta.sweep, np.where((pixels == 0) | (dioptres <= 0), np.nan, 1 / np.maximum(dioptres, 1e-9))
 
 
+def next_sample(sink, bus):
+    """The next sample, None at the end of the stream. Ends with what the bus says: who waits without looking there waits for
+    ever for a source that cannot start."""
+    while True:
+        if sample := sink.try_pull_sample(Gst.SECOND // 10):
+            return sample
+        if failure := bus.pop_filtered(Gst.MessageType.ERROR):
+            error, details = failure.parse_error()
+            sys.exit(f'{error.message} ({details})')
+        if sink.is_eos():
+            return None
+
+
 def main():
     Gst.init(None)
     pipeline = Gst.parse_launch('lenssweeptestsrc num-buffers=60 near=5 far=0.5 ! focalstackmux ! '
                                 'dffdepth unit=dioptre ! appsink name=depth sync=false')
-    sink = pipeline.get_by_name('depth')
-    pipeline.set_state(Gst.State.PLAYING)
-    while sample := sink.pull_sample():
-        sweep, depth = metres(sample)
-        print(f'sweep {sweep}: {depth[depth.shape[0] // 2, depth.shape[1] // 2]:.3f} m')
-    failure = pipeline.get_bus().pop_filtered(Gst.MessageType.ERROR)
-    pipeline.set_state(Gst.State.NULL)
-    return failure.parse_error()[0].message if failure else 0
+    sink, bus = pipeline.get_by_name('depth'), pipeline.get_bus()
+    try:
+        started = pipeline.set_state(Gst.State.PLAYING)
+        while sample := next_sample(sink, bus):
+            sweep, depth = metres(sample)
+            print(f'sweep {sweep}: {depth[depth.shape[0] // 2, depth.shape[1] // 2]:.3f} m')
+        if started == Gst.StateChangeReturn.FAILURE:
+            sys.exit('The pipeline does not start')
+    finally:
+        pipeline.set_state(Gst.State.NULL)
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    main()

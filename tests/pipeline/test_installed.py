@@ -46,16 +46,31 @@ class Installed(unittest.TestCase):
         self.assertEqual(len(lines), 10, output)
         self.assertTrue(all(0.2 <= float(value) <= 5 for value in lines), output)
 
+    def assert_fails_saying(self, words, *command, **environment):
+        finished = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                  timeout=20, env={**self.environment, **environment})
+        self.assertEqual(finished.returncode, 1, finished.stdout + finished.stderr)
+        self.assertIn(words, finished.stderr)
+
+    def assert_bad_sources_end_it(self, *command):
+        """One fails when it is made, one when it starts, one when it runs."""
+        self.assert_fails_saying('nosuchelement', *command, 'nosuchelement')
+        self.assert_fails_saying('/no/such/file', *command, 'filesrc location=/no/such/file ! gdpdepay')
+        self.assert_fails_saying('stream', *command, 'filesrc location=/dev/zero num-buffers=9 ! gdpdepay')
+        self.assert_fails_saying('OpenCL', *command, OCL_ICD_VENDORS='/nonexistent')
+
     def test_c_program_reads_the_depth(self):
         flags = run('pkg-config', '--cflags', '--libs', 'gstreamer-dff-1.0', 'gstreamer-app-1.0', env=self.environment)
         program = pathlib.Path(self.folder.name, 'read_depth')
         run('cc', '-Wall', '-Werror', SOURCE / 'pipelines/embed/read_depth.c', '-o', program, *shlex.split(flags),
             env=self.environment)
         self.assert_ten_distances(run(program, env=self.environment), 'dioptres')
+        self.assert_fails_saying('OpenCL', program, OCL_ICD_VENDORS='/nonexistent')
 
     def test_python_program_reads_the_depth(self):
-        output = run(sys.executable, SOURCE / 'pipelines/embed/read_depth.py', env=self.environment)
-        self.assert_ten_distances(output, 'm')
+        program = sys.executable, SOURCE / 'pipelines/embed/read_depth.py'
+        self.assert_ten_distances(run(*program, env=self.environment), 'm')
+        self.assert_fails_saying('OpenCL', *program, OCL_ICD_VENDORS='/nonexistent')
 
     def assert_two_sources(self, output):
         lines = re.findall(r'^sweep (\d+) of (\S+) to (\S+) dioptres: (\d+) mm, colour \d+ \d+ \d+$', output, re.MULTILINE)
@@ -72,10 +87,18 @@ class Installed(unittest.TestCase):
         run('c++', '-std=c++20', '-Wall', '-Werror', SOURCE / 'pipelines/embed/depth_camera.cpp', '-o', program,
             *shlex.split(flags), env=self.environment)
         self.assert_two_sources(run(program, *self.TWO_SOURCES, env=self.environment))
+        self.assert_bad_sources_end_it(program)
 
     def test_python_program_has_the_camera_in_one_element(self):
-        output = run(sys.executable, SOURCE / 'pipelines/embed/depth_camera.py', *self.TWO_SOURCES, env=self.environment)
-        self.assert_two_sources(output)
+        program = sys.executable, SOURCE / 'pipelines/embed/depth_camera.py'
+        self.assert_two_sources(run(*program, *self.TWO_SOURCES, env=self.environment))
+        self.assert_bad_sources_end_it(*program)
+
+    def test_programs_that_name_their_interpreter_can_be_run(self):
+        for folder in ('pipelines', 'docs'):
+            for path in (SOURCE / folder).rglob('*'):
+                if path.is_file() and path.read_bytes().startswith(b'#!'):
+                    self.assertTrue(os.access(path, os.X_OK), path)
 
     def test_every_plug_in_is_installed_and_loads(self):
         for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose', 'dffcamerabin', 'depthcolorize', 'dffmetapay', 'depthexrenc',

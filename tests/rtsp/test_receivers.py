@@ -114,6 +114,19 @@ class Receivers(unittest.TestCase):
                     for value in nearest:  # the sweep spans 5 to 1 dioptres
                         self.assertTrue(195 <= value <= 1010, printed)
 
+    def assert_receive_py_ends(self, url, words):
+        finished = subprocess.run(['/usr/bin/python3', RECEIVE, url], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                  timeout=15)
+        self.assertEqual(finished.returncode, 1)
+        self.assertIn(words, finished.stderr)
+
+    @unittest.skipIf('DFF_PRELOAD' in os.environ, 'Python does not load what is built with sanitizers')
+    def test_receive_py_says_at_once_why_no_frame_comes(self):
+        self.assert_receive_py_ends('rtsp://127.0.0.1:1/depth', 'Failed to connect')
+        with Server(f'{LIVE} ! identity name=aif') as server:
+            self.assert_receive_py_ends(server.url('/depth'), 'Not found')
+            self.assert_receive_py_ends(server.url('/color'), 'There is no depth')
+
     def test_bound_to_all_addresses_it_prints_one_that_others_reach(self):
         with second_machine(), Server(f'{LIVE} ! identity name=planes', address='0.0.0.0') as server:
             self.assertEqual(server.first_url, f'rtsp://10.0.0.1:{server.port}/planes')
