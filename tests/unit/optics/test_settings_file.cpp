@@ -167,6 +167,15 @@ TEST(SettingsFile, the_parser_sees_one_yaml_document_or_it_would_not_come_back)
         EXPECT_EQ(FileEntries("The file", TextFile(text).path).number("a", {}), 1.0) << text;
 }
 
+TEST(SettingsFile, binary_data_is_refused_in_each_language)
+{
+    for (const char *const text :
+         {"%YAML:1.0\n---\na: !!binary |\n  AAA\n", "%YAML:1.0\n---\na: !<tag:yaml.org,2002:binary> AAA\n",
+          "{\"a\": \"$base64$AAA\"}",
+          "<?xml version=\"1.0\"?>\n<opencv_storage><a type_id='binary'>AAA</a></opencv_storage>"})
+        EXPECT_EQ(fault_of_path(TextFile(text).path), "it has binary data; write numbers as text") << text;
+}
+
 TEST(SettingsFile, numbers_are_finite_and_in_their_range_which_is_told)
 {
     EXPECT_EQ(fault_of_number("5", {0.0, 10.0}), "");
