@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace {
@@ -145,6 +146,30 @@ void add_depth(GstBuffer *buffer)
     gst_buffer_add_depth_meta(buffer, &depth);
 }
 
+/* Catches what GLib says of a caller's faults. */
+class Messages {
+public:
+    Messages() : fatal_(g_log_set_always_fatal(G_LOG_LEVEL_ERROR))
+    {
+        g_log_set_default_handler([](const gchar *, GLogLevelFlags, const gchar *,
+                                     gpointer data) { (*static_cast<unsigned *>(data))++; },
+                                  count_.get());
+    }
+    ~Messages()
+    {
+        g_log_set_default_handler(g_log_default_handler, nullptr);
+        g_log_set_always_fatal(fatal_);
+    }
+    Messages(const Messages &) = delete;
+    Messages &operator=(const Messages &) = delete;
+
+    unsigned count() const { return *count_; }
+
+private:
+    std::unique_ptr<unsigned> count_ = std::make_unique<unsigned>(0);
+    GLogLevelFlags fatal_;
+};
+
 } // namespace
 
 struct Conversion {
@@ -207,6 +232,59 @@ TEST(DepthMeta, goes_with_a_copy_once)
     EXPECT_EQ(gst_buffer_get_n_meta(copy.get(), GST_DEPTH_META_API_TYPE), 1u);
 }
 
+/* As in C, where a message is all that a caller's fault comes to. */
+TEST(Metas, a_buffer_that_others_have_too_gets_none)
+{
+    const Buffer mine(gst_buffer_new());
+    add_focus(mine.get());
+    add_stack(mine.get());
+    add_depth(mine.get());
+    g_autoptr(GBytes) focus = gst_focus_meta_to_bytes(gst_buffer_get_focus_meta(mine.get()));
+    g_autoptr(GBytes) stack = gst_focal_stack_meta_to_bytes(gst_buffer_get_focal_stack_meta(mine.get()));
+    g_autoptr(GBytes) depth = gst_depth_meta_to_bytes(gst_buffer_get_depth_meta(mine.get()));
+    const GstFocusInfo focus_info = some_focus(3);
+    const GstDepthInfo depth_info = some_depth();
+
+    const Buffer one(gst_buffer_new());
+    const Buffer other(gst_buffer_ref(one.get()));
+    const Messages messages;
+    EXPECT_EQ(gst_buffer_add_focus_meta(one.get(), &focus_info), nullptr);
+    EXPECT_EQ(gst_buffer_add_focal_stack_meta(one.get(), 0, 6), nullptr);
+    EXPECT_EQ(gst_buffer_add_depth_meta(one.get(), &depth_info), nullptr);
+    EXPECT_EQ(gst_buffer_add_focus_meta_from_bytes(one.get(), focus, nullptr), nullptr);
+    EXPECT_EQ(gst_buffer_add_focal_stack_meta_from_bytes(one.get(), stack, nullptr), nullptr);
+    EXPECT_EQ(gst_buffer_add_depth_meta_from_bytes(one.get(), depth, nullptr), nullptr);
+    EXPECT_EQ(messages.count(), 6u);
+}
+
+TEST(Metas, layouts_are_not_written_to_a_buffer_that_others_have_too)
+{
+    g_autoptr(GstCaps) caps =
+        gst_caps_from_string("video/x-focal-stack,format=GRAY8,width=64,height=64,planes=2,framerate=1/1");
+    GstFocalStackInfo info;
+    ASSERT_TRUE(gst_focal_stack_info_from_caps(&info, caps));
+    const Buffer one(gst_buffer_new());
+    const Buffer other(gst_buffer_ref(one.get()));
+    const Messages messages;
+    gst_focal_stack_info_add_video_metas(&info, one.get());
+    EXPECT_EQ(messages.count(), 1u);
+    EXPECT_EQ(gst_buffer_get_meta(one.get(), GST_VIDEO_META_API_TYPE), nullptr);
+}
+
+TEST(DepthMeta, has_a_unit_there_is)
+{
+    const Buffer buffer(gst_buffer_new());
+    g_autoptr(GstCaps) caps = gst_caps_new_empty_simple("video/x-raw");
+    const Messages messages;
+    for (const int unit : {-1, static_cast<int>(GST_DEPTH_UNIT_AUTO), 5, 77}) {
+        GstDepthInfo depth = some_depth();
+        depth.unit = static_cast<GstDepthUnit>(unit);
+        EXPECT_EQ(gst_buffer_add_depth_meta(buffer.get(), &depth), nullptr);
+        gst_depth_info_to_caps(&depth, caps);
+    }
+    EXPECT_EQ(messages.count(), 8u);
+}
+
 TEST(StackMeta, has_no_plane_beyond_its_planes)
 {
     const Buffer buffer(gst_buffer_new());
@@ -228,6 +306,51 @@ TEST(DepthMeta, scaling_scales_the_intrinsics)
     wanted.cy = 5.5;
     expect_same_depth(gst_buffer_get_depth_meta(half.get()), wanted);
 }
+
+/* 64x48 pixels, turned to 48x64. Before GStreamer 1.28 a flipped frame has no such meta at all. */
+TEST(DepthMeta, a_flip_leaves_no_wrong_intrinsics)
+{
+    struct Flip {
+        const char *direction;
+        double fx, fy, cx, cy;
+    };
+    for (const Flip &flip :
+         {Flip{"horiz", 500.0, 510.0, 63 - 31.5, 23.5}, Flip{"vert", 500.0, 510.0, 31.5, 47 - 23.5},
+          Flip{"90r", 510.0, 500.0, 47 - 23.5, 31.5}, Flip{"90l", 510.0, 500.0, 23.5, 63 - 31.5}}) {
+        const Buffer turned =
+            through((std::string("videoflip video-direction=") + flip.direction).c_str(),
+                    "video/x-raw,format=GRAY16_LE,width=64,height=48,framerate=30/1", 64 * 48 * 2, add_depth);
+        ASSERT_TRUE(turned);
+        const GstDepthMeta *meta = gst_buffer_get_depth_meta(turned.get());
+        if (!meta || !meta->has_intrinsics)
+            continue;
+        EXPECT_DOUBLE_EQ(meta->fx, flip.fx) << flip.direction;
+        EXPECT_DOUBLE_EQ(meta->fy, flip.fy) << flip.direction;
+        EXPECT_DOUBLE_EQ(meta->cx, flip.cx) << flip.direction;
+        EXPECT_DOUBLE_EQ(meta->cy, flip.cy) << flip.direction;
+    }
+}
+
+#if GST_CHECK_VERSION(1, 24, 0)
+TEST(Metas, go_to_other_processes)
+{
+    const Buffer sent(gst_buffer_new());
+    const Buffer received(gst_buffer_new());
+    add_focus(sent.get());
+    add_stack(sent.get());
+    add_depth(sent.get());
+    gpointer state = nullptr;
+    while (GstMeta *meta = gst_buffer_iterate_meta(sent.get(), &state)) {
+        g_autoptr(GByteArray) bytes = g_byte_array_new();
+        guint32 consumed = 0;
+        ASSERT_TRUE(gst_meta_serialize_simple(meta, bytes));
+        EXPECT_NE(gst_meta_deserialize(received.get(), bytes->data, bytes->len, &consumed), nullptr);
+    }
+    expect_focus_meta(received.get(), some_focus(3));
+    expect_some_stack_meta(received.get());
+    expect_same_depth(gst_buffer_get_depth_meta(received.get()), some_depth());
+}
+#endif
 
 TEST(DepthMeta, unknown_intrinsics_stay_unknown)
 {

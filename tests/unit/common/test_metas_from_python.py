@@ -54,6 +54,22 @@ class Metas(unittest.TestCase):
         self.assertEqual(meta.unit, GstDff.DepthUnit.DIOPTRE)
         self.assertEqual((meta.near, meta.far), (5.0, 0.0))
 
+    def test_a_buffer_that_others_have_too_gets_no_meta(self):
+        level = GLib.log_set_always_fatal(GLib.LogLevelFlags.LEVEL_ERROR)
+        self.addCleanup(GLib.log_set_always_fatal, level)
+        mine = Gst.Buffer.new_allocate(None, 16, None)
+        stack = GstDff.buffer_add_focal_stack_meta(mine, 12, 6)
+        shared = Gst.Buffer.new_allocate(None, 16, None)
+        sample = Gst.Sample.new(shared, None, None, None)
+        focus, depth = GstDff.FocusInfo(), GstDff.DepthInfo()
+        focus.init()
+        depth.init()
+        self.assertIsNone(GstDff.buffer_add_focus_meta(shared, focus))
+        self.assertIsNone(GstDff.buffer_add_focal_stack_meta(shared, 0, 6))
+        self.assertIsNone(GstDff.buffer_add_depth_meta(shared, depth))
+        self.assertIsNone(GstDff.buffer_add_focal_stack_meta_from_bytes(shared, stack.to_bytes()))
+        self.assertIsNotNone(sample)
+
     def test_bytes_come_back_and_damaged_ones_raise(self):
         buffer = Gst.Buffer.new_allocate(None, 16, None)
         stack = GstDff.buffer_add_focal_stack_meta(buffer, 12, 6)

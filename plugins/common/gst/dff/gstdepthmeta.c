@@ -33,11 +33,18 @@ GType gst_depth_unit_get_type(void)
 GType gst_depth_meta_api_get_type(void)
 {
     static GType type;
-    static const gchar *tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, NULL};
+    static const gchar *tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR,
+                                  GST_META_TAG_VIDEO_ORIENTATION_STR, NULL};
 
     if (g_once_init_enter(&type))
         g_once_init_leave(&type, gst_meta_api_type_register("GstDepthMetaAPI", tags));
     return type;
+}
+
+/* Of a picture, which GST_DEPTH_UNIT_AUTO is not. */
+static gboolean is_unit(gint unit)
+{
+    return unit >= GST_DEPTH_UNIT_INDEX && unit <= GST_DEPTH_UNIT_MICROMETRE;
 }
 
 static void set_depth(GstDepthMeta *self, const GstDepthInfo *info)
@@ -80,32 +87,109 @@ static void scale_intrinsics(GstDepthInfo *info, const GstVideoMetaTransform *sc
     info->cy = (info->cy + 0.5) * y - 0.5;
 }
 
+#if GST_CHECK_VERSION(1, 28, 0)
+/* Flips, turns by right angles, crops and scales lead axes to axes: x' = a x + b, or the same of y.
+ * Intrinsics of what else a picture may go through cannot be told. p1 and p2 of the distortion go with y and
+ * x. */
+static void map_intrinsics(GstDepthInfo *info, const GstVideoMetaTransformMatrix *map)
+{
+    const gboolean swaps = map->matrix[0][0] == 0;
+    const gdouble x = swaps ? map->matrix[0][1] : map->matrix[0][0];
+    const gdouble y = swaps ? map->matrix[1][0] : map->matrix[1][1];
+    const gdouble others[] = {swaps ? map->matrix[1][1] : map->matrix[0][1], swaps ? 0 : map->matrix[1][0],
+                              map->matrix[2][0], map->matrix[2][1]};
+    const GstDepthInfo old = *info;
+
+    for (guint i = 0; i < G_N_ELEMENTS(others); i++)
+        info->has_intrinsics = info->has_intrinsics && others[i] == 0;
+    const gdouble cx = (swaps ? old.cy - map->in_rectangle.y : old.cx - map->in_rectangle.x);
+    const gdouble cy = (swaps ? old.cx - map->in_rectangle.x : old.cy - map->in_rectangle.y);
+    info->fx = fabs(x) * (swaps ? old.fy : old.fx);
+    info->fy = fabs(y) * (swaps ? old.fx : old.fy);
+    info->cx = x * cx + map->matrix[0][2] + map->out_rectangle.x;
+    info->cy = y * cy + map->matrix[1][2] + map->out_rectangle.y;
+    info->distortion[3] = copysign(1, x) * old.distortion[swaps ? 2 : 3];
+    info->distortion[2] = copysign(1, y) * old.distortion[swaps ? 3 : 2];
+}
+#endif
+
+static void transform_intrinsics(GstDepthInfo *info, GQuark type, gpointer data)
+{
+    if (GST_VIDEO_META_TRANSFORM_IS_SCALE(type))
+        scale_intrinsics(info, data);
+#if GST_CHECK_VERSION(1, 28, 0)
+    if (GST_VIDEO_META_TRANSFORM_IS_MATRIX(type))
+        map_intrinsics(info, data);
+#endif
+}
+
+/* What else is done to a picture leaves nobody knows which intrinsics: then there is no meta. */
+static gboolean is_known(GQuark type)
+{
+#if GST_CHECK_VERSION(1, 28, 0)
+    if (GST_VIDEO_META_TRANSFORM_IS_MATRIX(type))
+        return TRUE;
+#endif
+    return GST_META_TRANSFORM_IS_COPY(type) || GST_VIDEO_META_TRANSFORM_IS_SCALE(type);
+}
+
 static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buffer, GQuark type,
                           gpointer data)
 {
     GstDepthInfo info;
 
     (void)buffer;
-    if (!GST_META_TRANSFORM_IS_COPY(type) && !GST_VIDEO_META_TRANSFORM_IS_SCALE(type))
+    if (!is_known(type))
         return FALSE;
     if (gst_buffer_get_depth_meta(destination))
         return TRUE;
 
     gst_depth_meta_get_depth((GstDepthMeta *)meta, &info);
-    if (GST_VIDEO_META_TRANSFORM_IS_SCALE(type) && info.has_intrinsics)
-        scale_intrinsics(&info, data);
+    if (info.has_intrinsics)
+        transform_intrinsics(&info, type, data);
     return gst_buffer_add_depth_meta(destination, &info) != NULL;
 }
+
+#if GST_CHECK_VERSION(1, 24, 0)
+static gboolean serialize(const GstMeta *meta, GstByteArrayInterface *data, guint8 *version)
+{
+    return gst_dff_bytes_append(gst_depth_meta_to_bytes((const GstDepthMeta *)meta), data, version);
+}
+
+static GstMeta *deserialize(const GstMetaInfo *info, GstBuffer *buffer, const guint8 *data, gsize size,
+                            guint8 version)
+{
+    g_autoptr(GBytes) bytes = g_bytes_new_static(data, size);
+
+    (void)info;
+    (void)version; /* the bytes say it too */
+    return (GstMeta *)gst_buffer_add_depth_meta_from_bytes(buffer, bytes, NULL);
+}
+
+static const GstMetaInfo *register_meta(void)
+{
+    GstMetaInfo *info = gst_meta_info_new(GST_DEPTH_META_API_TYPE, "GstDepthMeta", sizeof(GstDepthMeta));
+
+    info->init_func = init;
+    info->transform_func = transform;
+    info->serialize_func = serialize;
+    info->deserialize_func = deserialize;
+    return gst_meta_info_register(info);
+}
+#else
+static const GstMetaInfo *register_meta(void)
+{
+    return gst_meta_register(GST_DEPTH_META_API_TYPE, "GstDepthMeta", sizeof(GstDepthMeta), init, NULL,
+                             transform);
+}
+#endif
 
 const GstMetaInfo *gst_depth_meta_get_info(void)
 {
     static const GstMetaInfo *info;
 
-    if (g_once_init_enter((GstMetaInfo **)&info)) {
-        const GstMetaInfo *registered = gst_meta_register(GST_DEPTH_META_API_TYPE, "GstDepthMeta",
-                                                          sizeof(GstDepthMeta), init, NULL, transform);
-        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)registered);
-    }
+    if (g_once_init_enter((GstMetaInfo **)&info))
+        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)register_meta());
     return info;
 }
 
@@ -125,12 +209,14 @@ void gst_depth_info_init(GstDepthInfo *info)
  * @buffer: a writable #GstBuffer
  * @info: what its pixels mean
  *
- * Returns: (transfer none): the meta, which belongs to @buffer
+ * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
+ * writable
  */
 GstDepthMeta *gst_buffer_add_depth_meta(GstBuffer *buffer, const GstDepthInfo *info)
 {
     g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
-    g_return_val_if_fail(info && info->unit != GST_DEPTH_UNIT_AUTO, NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
+    g_return_val_if_fail(info && is_unit(info->unit), NULL);
 
     GstDepthMeta *self = (GstDepthMeta *)gst_buffer_add_meta(buffer, GST_DEPTH_META_INFO, NULL);
     set_depth(self, info);
@@ -189,6 +275,9 @@ static const gchar *unit_nick(GstDepthUnit unit)
  */
 void gst_depth_info_to_caps(const GstDepthInfo *info, GstCaps *caps)
 {
+    g_return_if_fail(info && is_unit(info->unit));
+    g_return_if_fail(GST_IS_CAPS(caps) && gst_caps_is_writable(caps));
+
     for (guint i = 0; i < gst_caps_get_size(caps); i++)
         gst_structure_remove_fields(gst_caps_get_structure(caps, i), "depth-near", "depth-far", NULL);
     gst_caps_set_simple(caps, "depth-unit", G_TYPE_STRING, unit_nick(info->unit), NULL);
@@ -251,7 +340,7 @@ static gboolean read_depth(GstDepthInfo *info, GstByteReader *reader)
 
     if (!gst_byte_reader_get_uint8(reader, &unit) || !gst_byte_reader_get_uint8(reader, &has_intrinsics))
         return FALSE;
-    if (unit < GST_DEPTH_UNIT_INDEX || unit > GST_DEPTH_UNIT_MICROMETRE)
+    if (!is_unit(unit))
         return FALSE;
     info->unit = (GstDepthUnit)unit;
     info->has_intrinsics = has_intrinsics != 0;
@@ -271,10 +360,15 @@ static gboolean read_depth(GstDepthInfo *info, GstByteReader *reader)
  * @bytes: what gst_depth_meta_to_bytes() gave
  * @error: where an error goes
  *
- * Returns: (transfer none): the meta, or %NULL with @error set if @bytes are damaged or of an unknown version
+ * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
+ * unknown version
  */
 GstDepthMeta *gst_buffer_add_depth_meta_from_bytes(GstBuffer *buffer, GBytes *bytes, GError **error)
 {
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
+    g_return_val_if_fail(bytes != NULL, NULL);
+
     GstByteReader reader;
     GstDepthInfo info;
 

@@ -48,3 +48,16 @@ gboolean gst_dff_bytes_close(const GstByteReader *reader, gboolean complete, GEr
                     "The meta is cut short or damaged (%u bytes)", gst_byte_reader_get_size(reader));
     return whole;
 }
+
+#if GST_CHECK_VERSION(1, 24, 0)
+gboolean gst_dff_bytes_append(GBytes *bytes, GstByteArrayInterface *data, guint8 *version)
+{
+    gsize size = 0;
+    const guint8 *begin = g_bytes_get_data(bytes, &size);
+    const gboolean appended = gst_byte_array_interface_append_data(data, begin, size);
+
+    *version = GST_DFF_BYTES_VERSION;
+    g_bytes_unref(bytes);
+    return appended;
+}
+#endif

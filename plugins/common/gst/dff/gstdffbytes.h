@@ -17,4 +17,9 @@ GBytes *gst_dff_bytes_end(GstByteWriter *writer);
 gboolean gst_dff_bytes_open(GstByteReader *reader, GBytes *bytes, guint8 kind, GError **error);
 gboolean gst_dff_bytes_close(const GstByteReader *reader, gboolean complete, GError **error);
 
+#if GST_CHECK_VERSION(1, 24, 0)
+/* A meta's serialize function: appends `bytes`, which it takes. */
+gboolean gst_dff_bytes_append(GBytes *bytes, GstByteArrayInterface *data, guint8 *version);
+#endif
+
 G_END_DECLS

@@ -254,6 +254,8 @@ void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuff
 {
     const GstVideoInfo *frame = &info->frame;
 
+    g_return_if_fail(GST_IS_BUFFER(buffer));
+    g_return_if_fail(gst_buffer_is_writable(buffer));
     for (guint z = 0; z < info->planes; z++) {
         gsize offset[GST_VIDEO_MAX_PLANES];
         for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(frame); i++)

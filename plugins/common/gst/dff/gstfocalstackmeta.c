@@ -102,16 +102,49 @@ static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buff
     return TRUE;
 }
 
+#if GST_CHECK_VERSION(1, 24, 0)
+static gboolean serialize(const GstMeta *meta, GstByteArrayInterface *data, guint8 *version)
+{
+    return gst_dff_bytes_append(gst_focal_stack_meta_to_bytes((const GstFocalStackMeta *)meta), data,
+                                version);
+}
+
+static GstMeta *deserialize(const GstMetaInfo *info, GstBuffer *buffer, const guint8 *data, gsize size,
+                            guint8 version)
+{
+    g_autoptr(GBytes) bytes = g_bytes_new_static(data, size);
+
+    (void)info;
+    (void)version; /* the bytes say it too */
+    return (GstMeta *)gst_buffer_add_focal_stack_meta_from_bytes(buffer, bytes, NULL);
+}
+
+static const GstMetaInfo *register_meta(void)
+{
+    GstMetaInfo *info =
+        gst_meta_info_new(GST_FOCAL_STACK_META_API_TYPE, "GstFocalStackMeta", sizeof(GstFocalStackMeta));
+
+    info->init_func = init;
+    info->free_func = release;
+    info->transform_func = transform;
+    info->serialize_func = serialize;
+    info->deserialize_func = deserialize;
+    return gst_meta_info_register(info);
+}
+#else
+static const GstMetaInfo *register_meta(void)
+{
+    return gst_meta_register(GST_FOCAL_STACK_META_API_TYPE, "GstFocalStackMeta", sizeof(GstFocalStackMeta),
+                             init, release, transform);
+}
+#endif
+
 const GstMetaInfo *gst_focal_stack_meta_get_info(void)
 {
     static const GstMetaInfo *info;
 
-    if (g_once_init_enter((GstMetaInfo **)&info)) {
-        const GstMetaInfo *registered =
-            gst_meta_register(GST_FOCAL_STACK_META_API_TYPE, "GstFocalStackMeta", sizeof(GstFocalStackMeta),
-                              init, release, transform);
-        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)registered);
-    }
+    if (g_once_init_enter((GstMetaInfo **)&info))
+        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)register_meta());
     return info;
 }
 
@@ -123,11 +156,13 @@ const GstMetaInfo *gst_focal_stack_meta_get_info(void)
  *
  * Adds the meta of a complete stack whose planes' focus is unknown.
  *
- * Returns: (transfer none): the meta, which belongs to @buffer
+ * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
+ * writable
  */
 GstFocalStackMeta *gst_buffer_add_focal_stack_meta(GstBuffer *buffer, guint64 sequence, guint planes)
 {
     g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
     g_return_val_if_fail(planes >= 2 && planes <= GST_FOCAL_STACK_MAX_PLANES, NULL);
 
     GstFocalStackMeta *self =
@@ -163,6 +198,7 @@ GstFocalStackMeta *gst_buffer_get_focal_stack_meta(GstBuffer *buffer)
  */
 void gst_focal_stack_meta_set_focus(GstFocalStackMeta *meta, guint plane, const GstFocusInfo *info)
 {
+    g_return_if_fail(meta != NULL && info != NULL);
     g_return_if_fail(plane < meta->planes);
 
     meta->focus[plane] = *info;
@@ -178,6 +214,7 @@ void gst_focal_stack_meta_set_focus(GstFocalStackMeta *meta, guint plane, const 
  */
 gboolean gst_focal_stack_meta_get_focus(const GstFocalStackMeta *meta, guint plane, GstFocusInfo *info)
 {
+    g_return_val_if_fail(meta != NULL && info != NULL, FALSE);
     if (plane >= meta->planes)
         return FALSE;
     *info = meta->focus[plane];
@@ -225,11 +262,16 @@ static gboolean names_planes(guint64 mask, guint planes)
  * @bytes: what gst_focal_stack_meta_to_bytes() gave
  * @error: where an error goes
  *
- * Returns: (transfer none): the meta, or %NULL with @error set if @bytes are damaged or of an unknown version
+ * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
+ * unknown version
  */
 GstFocalStackMeta *gst_buffer_add_focal_stack_meta_from_bytes(GstBuffer *buffer, GBytes *bytes,
                                                               GError **error)
 {
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
+    g_return_val_if_fail(bytes != NULL, NULL);
+
     GstByteReader reader;
     GstFocusInfo focus[GST_FOCAL_STACK_MAX_PLANES];
     guint64 sequence = 0, missing = 0, repeated = 0;

@@ -58,15 +58,46 @@ static gboolean transform(GstBuffer *destination, GstMeta *meta, GstBuffer *buff
     return gst_buffer_add_focus_meta(destination, &info) != NULL;
 }
 
+#if GST_CHECK_VERSION(1, 24, 0)
+static gboolean serialize(const GstMeta *meta, GstByteArrayInterface *data, guint8 *version)
+{
+    return gst_dff_bytes_append(gst_focus_meta_to_bytes((const GstFocusMeta *)meta), data, version);
+}
+
+static GstMeta *deserialize(const GstMetaInfo *info, GstBuffer *buffer, const guint8 *data, gsize size,
+                            guint8 version)
+{
+    g_autoptr(GBytes) bytes = g_bytes_new_static(data, size);
+
+    (void)info;
+    (void)version; /* the bytes say it too */
+    return (GstMeta *)gst_buffer_add_focus_meta_from_bytes(buffer, bytes, NULL);
+}
+
+static const GstMetaInfo *register_meta(void)
+{
+    GstMetaInfo *info = gst_meta_info_new(GST_FOCUS_META_API_TYPE, "GstFocusMeta", sizeof(GstFocusMeta));
+
+    info->init_func = init;
+    info->transform_func = transform;
+    info->serialize_func = serialize;
+    info->deserialize_func = deserialize;
+    return gst_meta_info_register(info);
+}
+#else
+static const GstMetaInfo *register_meta(void)
+{
+    return gst_meta_register(GST_FOCUS_META_API_TYPE, "GstFocusMeta", sizeof(GstFocusMeta), init, NULL,
+                             transform);
+}
+#endif
+
 const GstMetaInfo *gst_focus_meta_get_info(void)
 {
     static const GstMetaInfo *info;
 
-    if (g_once_init_enter((GstMetaInfo **)&info)) {
-        const GstMetaInfo *registered = gst_meta_register(GST_FOCUS_META_API_TYPE, "GstFocusMeta",
-                                                          sizeof(GstFocusMeta), init, NULL, transform);
-        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)registered);
-    }
+    if (g_once_init_enter((GstMetaInfo **)&info))
+        g_once_init_leave((GstMetaInfo **)&info, (GstMetaInfo *)register_meta());
     return info;
 }
 
@@ -86,11 +117,13 @@ void gst_focus_info_init(GstFocusInfo *info)
  * @buffer: a writable #GstBuffer
  * @info: how the plane was focused and taken
  *
- * Returns: (transfer none): the meta, which belongs to @buffer
+ * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
+ * writable
  */
 GstFocusMeta *gst_buffer_add_focus_meta(GstBuffer *buffer, const GstFocusInfo *info)
 {
     g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
     g_return_val_if_fail(info, NULL);
 
     GstFocusMeta *self = (GstFocusMeta *)gst_buffer_add_meta(buffer, GST_FOCUS_META_INFO, NULL);
@@ -175,10 +208,15 @@ GBytes *gst_focus_meta_to_bytes(const GstFocusMeta *meta)
  * @bytes: what gst_focus_meta_to_bytes() gave
  * @error: where an error goes
  *
- * Returns: (transfer none): the meta, or %NULL with @error set if @bytes are damaged or of an unknown version
+ * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
+ * unknown version
  */
 GstFocusMeta *gst_buffer_add_focus_meta_from_bytes(GstBuffer *buffer, GBytes *bytes, GError **error)
 {
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), NULL);
+    g_return_val_if_fail(gst_buffer_is_writable(buffer), NULL);
+    g_return_val_if_fail(bytes != NULL, NULL);
+
     GstByteReader reader;
     GstFocusInfo info;
 
