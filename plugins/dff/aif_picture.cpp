@@ -7,10 +7,31 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace dff {
 
 namespace {
+
+/* A buffer's memory, mapped as long as this lives. */
+class MappedBuffer {
+public:
+    MappedBuffer(GstBuffer *buffer, GstMapFlags flags) : buffer_(buffer)
+    {
+        if (!gst_buffer_map(buffer, &map_, flags))
+            throw std::runtime_error("The picture's memory cannot be mapped");
+    }
+    ~MappedBuffer() { gst_buffer_unmap(buffer_, &map_); }
+
+    MappedBuffer(const MappedBuffer &) = delete;
+    MappedBuffer &operator=(const MappedBuffer &) = delete;
+
+    std::span<std::byte> memory() const { return {reinterpret_cast<std::byte *>(map_.data), map_.size}; }
+
+private:
+    GstBuffer *buffer_;
+    GstMapInfo map_{};
+};
 
 bool is_same(double one, double other)
 {
@@ -38,6 +59,7 @@ void AifPicture::set_stack(const GstFocalStackInfo &stack)
 {
     stack_ = stack;
     composer_.reset();
+    encoder_.reset();
     pool_.start(stack.frame);
 }
 
@@ -51,8 +73,6 @@ GstBuffer *AifPicture::compose(GstBuffer *stack, GstBuffer *depth, AifComposer::
 {
     ensure_composer();
     g_autoptr(GstBuffer) picture = pool_.acquire();
-    if (!picture)
-        throw std::runtime_error("There is no memory left for another picture");
     fill(stack, depth, blend, picture);
     stamp_picture(picture, GST_BUFFER_PTS_IS_VALID(stack) || !depth ? stack : depth, stack, next_picture_++);
     return reinterpret_cast<GstBuffer *>(g_steal_pointer(&picture));
@@ -64,22 +84,28 @@ void AifPicture::ensure_composer()
         return;
     translate_errors(*device_,
                      [&] { composer_ = std::make_unique<AifComposer>(device_, stack_shape(stack_)); });
-    scale_.reset();
+    encoder_is_new_ = encoder_.has_value();
     no_depth_.assign(
         static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&stack_.frame)) * GST_VIDEO_INFO_HEIGHT(&stack_.frame), 0);
 }
 
-void AifPicture::ensure_encoder(GstBuffer *stack, GstBuffer *depth)
+std::optional<std::string> AifPicture::take_facts(GstBuffer *stack, GstBuffer *depth)
 {
-    PlanePositions positions = plane_positions(stack);
     GstDepthInfo info = caps_facts_;
     if (const GstDepthMeta *meta = gst_buffer_get_depth_meta(depth))
         gst_depth_meta_get_depth(meta, &info);
-    if (scale_ && have_same_scale(*scale_, info) && positions == positions_)
-        return;
-    composer_->set_encoder(encoder_of(info, stack_.planes, positions));
-    positions_ = std::move(positions);
-    scale_ = info;
+    try {
+        PlanePositions positions = plane_positions(stack_, stack);
+        if (encoder_ && have_same_scale(scale_, info) && positions == positions_)
+            return std::nullopt;
+        encoder_ = encoder_of(info, stack_.planes, positions);
+        encoder_is_new_ = true;
+        positions_ = std::move(positions);
+        scale_ = info;
+        return std::nullopt;
+    } catch (const std::invalid_argument &error) {
+        return error.what();
+    }
 }
 
 void AifPicture::fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend, GstBuffer *picture)
@@ -96,16 +122,13 @@ void AifPicture::fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend ble
                                       sizeof(guint16) * static_cast<size_t>(GST_VIDEO_INFO_WIDTH(&frame))};
     if (depth) {
         require_size(depth_, frame, "stack");
-        ensure_encoder(stack, depth);
+        if (std::exchange(encoder_is_new_, false))
+            composer_->set_encoder(*encoder_);
         mapped_depth.emplace(depth_, depth, GST_MAP_READ);
         depth_view = {mapped_depth->memory(), mapped_depth->stride()};
     }
-    GstMapInfo output;
-    if (!gst_buffer_map(picture, &output, GST_MAP_WRITE))
-        throw std::runtime_error("The picture's memory cannot be written");
-    composer_->compose(mapped_stack.view(), depth_view, blend,
-                       {reinterpret_cast<std::byte *>(output.data), output.size}, layout);
-    gst_buffer_unmap(picture, &output);
+    const MappedBuffer output(picture, GST_MAP_WRITE);
+    composer_->compose(mapped_stack.view(), depth_view, blend, output.memory(), layout);
 }
 
 } // namespace dff

@@ -9,6 +9,7 @@
 #include <gst/dff/dff.h>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace dff {
 
@@ -24,18 +25,23 @@ public:
     void set_depth(const GstVideoInfo &depth, const GstDepthInfo &facts);
     const GstFocalStackInfo &stack() const { return stack_; }
 
+    /* Whether the depth map can be read, of planes as `stack` says that they lie: what keeps it from it, in a
+     * user's words. compose() goes by the last one that was. */
+    std::optional<std::string> take_facts(GstBuffer *stack, GstBuffer *depth);
+
     /* Returns a picture with the stack's time. Without a depth map it is the mean of the planes.
      * Throws EngineError, or std::exception with a user's text if depth and stack do not fit each other. */
     GstBuffer *compose(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend);
 
 private:
     void ensure_composer();
-    void ensure_encoder(GstBuffer *stack, GstBuffer *depth);
     void fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend blend, GstBuffer *picture);
 
     std::shared_ptr<Device> device_;
     std::unique_ptr<AifComposer> composer_;
-    std::optional<GstDepthInfo> scale_; /* what the composer's encoder stands for, with positions_ */
+    std::optional<DepthEncoder> encoder_; /* of scale_ and positions_ */
+    bool encoder_is_new_ = false;         /* the composer does not have it yet */
+    GstDepthInfo scale_{};
     PlanePositions positions_;
     GstFocalStackInfo stack_{};
     GstVideoInfo depth_{};

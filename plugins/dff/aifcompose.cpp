@@ -21,10 +21,13 @@
 #include "aifcompose.h"
 
 #include "aif_picture.h"
+#include "common/running_time.h"
 #include "engine_caps.h"
 #include "gstcl/depth_composer.h"
+#include "number_matching.h"
 
 #include <gst/dff/dff.h>
+#include <utility>
 
 GST_DEBUG_CATEGORY_STATIC(aif_compose_debug);
 #define GST_CAT_DEFAULT aif_compose_debug
@@ -62,7 +65,7 @@ enum Property : guint { PropertyBlend = 1, PropertyDevice, PropertyStats };
 class State : public dff::DepthComposer {
 public:
     explicit State(GstAggregator *element)
-        : DepthComposer(element, &stack_template, &depth_template, "a stack and its depth")
+        : DepthComposer(element, &stack_template, &depth_template, "a stack and its depth"), element_(element)
     {
     }
 
@@ -81,26 +84,52 @@ public:
     const GstVideoInfo &frame() const { return picture_.stack().frame; }
 
 private:
-    void open_device(std::shared_ptr<dff::Device> device) override { picture_.start(std::move(device)); }
-    void close_device() override { picture_.stop(); }
+    void open_device(std::shared_ptr<dff::Device> device) override
+    {
+        GST_INFO_OBJECT(element_, "composing on %s", device->name().c_str());
+        picture_.start(std::move(device));
+    }
+    void close_device() override;
     bool set_main_caps(const GstCaps *caps) override;
     bool set_depth_caps(const GstCaps *caps) override;
     std::optional<GstBuffer *> matching_depth(GstAggregatorPad *stack_pad, GstBuffer *stack,
                                               GstAggregatorPad *depth_pad) override;
+    std::optional<GstBuffer *> next_depth(GstAggregatorPad *stack_pad, GstBuffer *stack,
+                                          GstAggregatorPad *depth_pad);
+    bool is_usable(GstBuffer *stack, GstBuffer *depth);
     GstBuffer *compose(GstBuffer *stack, GstBuffer *depth) override
     {
+        GST_LOG_OBJECT(element_, "a picture of %" GST_PTR_FORMAT " %s", stack,
+                       depth ? "by its depth" : "without depth");
         return picture_.compose(stack, depth, blend());
     }
 
     dff::AifComposer::Blend blend_ = dff::AifComposer::Blend::Soft; /* under the mutex */
-    dff::AifPicture picture_;                                       /* the streaming thread's own */
+
+    /* The streaming thread's own. */
+    dff::AifPicture picture_;
+    dff::NumberMatching matching_;
+    std::string last_warning_;
+    GstAggregator *element_; /* which owns this */
 };
+
+void State::close_device()
+{
+    picture_.stop();
+    matching_ = {};
+    last_warning_.clear();
+}
 
 bool State::set_main_caps(const GstCaps *caps)
 {
     GstFocalStackInfo info;
     if (!gst_focal_stack_info_from_caps(&info, caps))
         return false;
+    if (const auto problem = dff::wrong_size(info.frame)) {
+        GST_ELEMENT_ERROR(element_, STREAM, FORMAT, ("%s", problem->c_str()), (nullptr));
+        return false;
+    }
+    GST_INFO_OBJECT(element_, "stacks are %" GST_PTR_FORMAT, caps);
     picture_.set_stack(info);
     return true;
 }
@@ -113,36 +142,80 @@ bool State::set_depth_caps(const GstCaps *caps)
         return false;
     gst_depth_info_init(&facts);
     gst_depth_info_from_caps(&facts, caps);
+    GST_INFO_OBJECT(element_, "depth is %" GST_PTR_FORMAT, caps);
     picture_.set_depth(info, facts);
     return true;
 }
 
-/* By number; without metas the first goes with the first. */
-std::optional<GstBuffer *> State::matching_depth(GstAggregatorPad *, GstBuffer *stack,
+/* Running time, since the pads' segments may differ. */
+std::optional<uint64_t> time_of(GstAggregatorPad *pad, GstBuffer *buffer)
+{
+    const GstClockTime time = dff::running_time(pad->segment, GST_BUFFER_PTS(buffer));
+    return GST_CLOCK_TIME_IS_VALID(time) ? std::optional(time) : std::nullopt;
+}
+
+std::optional<GstBuffer *> State::matching_depth(GstAggregatorPad *stack_pad, GstBuffer *stack,
                                                  GstAggregatorPad *depth_pad)
 {
+    const std::optional<GstBuffer *> found = next_depth(stack_pad, stack, depth_pad);
+    if (!found)
+        return std::nullopt;
+    if (const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack))
+        matching_.pass_stack(meta->sequence);
+    if (!*found || is_usable(stack, *found))
+        return found;
+    gst_buffer_unref(*found);
+    return nullptr;
+}
+
+/* By number; without metas the first goes with the first. */
+std::optional<GstBuffer *> State::next_depth(GstAggregatorPad *stack_pad, GstBuffer *stack,
+                                             GstAggregatorPad *depth_pad)
+{
+    using Order = dff::NumberMatching::Order;
     const GstFocalStackMeta *stack_meta = gst_buffer_get_focal_stack_meta(stack);
 
     while (GstBuffer *depth = gst_aggregator_pad_peek_buffer(depth_pad)) {
         const GstDepthMeta *depth_meta = gst_buffer_get_depth_meta(depth);
         const bool is_gap = gst_buffer_get_size(depth) == 0;
-        const bool comparable = stack_meta && depth_meta;
-        if (!is_gap && (!comparable || depth_meta->sequence == stack_meta->sequence)) {
-            gst_aggregator_pad_drop_buffer(depth_pad);
-            return depth;
-        }
-        const bool later = comparable && depth_meta->sequence > stack_meta->sequence;
-        gst_buffer_unref(depth);
-        if (later)
+        const Order order = stack_meta && depth_meta
+                                ? matching_.order({depth_meta->sequence, time_of(depth_pad, depth)},
+                                                  {stack_meta->sequence, time_of(stack_pad, stack)})
+                                : Order::Same;
+        if (!is_gap && order == Order::Later) {
+            GST_DEBUG_OBJECT(stack_pad,
+                             "stack %" G_GUINT64_FORMAT " has no depth: the next is of %" G_GUINT64_FORMAT,
+                             stack_meta->sequence, depth_meta->sequence);
+            gst_buffer_unref(depth);
             return nullptr;
-        GST_DEBUG_OBJECT(depth_pad, "dropping a depth map without its stack, or a gap");
+        }
         gst_aggregator_pad_drop_buffer(depth_pad);
+        if (depth_meta)
+            matching_.pass_depth(depth_meta->sequence);
+        if (!is_gap && order == Order::Same)
+            return depth;
+        GST_DEBUG_OBJECT(depth_pad, "dropping a depth map without its stack, or a gap: %" GST_PTR_FORMAT,
+                         depth);
+        gst_buffer_unref(depth);
         if (is_gap && !stack_meta)
             return nullptr; /* the k-th with the k-th */
     }
     if (gst_aggregator_pad_is_eos(depth_pad))
         return nullptr;
     return std::nullopt;
+}
+
+/* Says once why not. */
+bool State::is_usable(GstBuffer *stack, GstBuffer *depth)
+{
+    const std::optional<std::string> problem = picture_.take_facts(stack, depth);
+    if (!problem)
+        return true;
+    GST_WARNING_OBJECT(element_, "a depth map cannot be read: %s", problem->c_str());
+    if (std::exchange(last_warning_, *problem) != *problem)
+        GST_ELEMENT_WARNING(element_, STREAM, FORMAT, ("A depth map cannot be read: %s", problem->c_str()),
+                            ("The picture is the mean of the stack's planes."));
+    return false;
 }
 
 } // namespace

@@ -3,89 +3,100 @@
 #include "depth_maps.h"
 
 #include <cstring>
+#include <stdexcept>
+#include <utility>
 
 namespace dff {
 
+DepthMaps::Map::Map(std::shared_ptr<DepthOutput> output, const GstVideoInfo &stack)
+    : output_(std::move(output)), buffer_(output_->acquire())
+{
+    gst_video_info_set_format(&info_, output_->format(), GST_VIDEO_INFO_WIDTH(&stack),
+                              GST_VIDEO_INFO_HEIGHT(&stack));
+    /* Takes no reference to the buffer, which then can still be given metas. */
+    const bool is_mapped = gst_buffer_map(buffer_, &map_, GST_MAP_WRITE);
+    if (is_mapped && map_.size >= GST_VIDEO_INFO_SIZE(&info_))
+        return;
+    if (is_mapped)
+        gst_buffer_unmap(buffer_, &map_);
+    gst_buffer_unref(buffer_);
+    throw std::runtime_error("The memory of a depth map cannot be written");
+}
+
+DepthMaps::Map::~Map()
+{
+    if (GstBuffer *buffer = release())
+        gst_buffer_unref(buffer);
+}
+
+OutputPicture DepthMaps::Map::picture() const
+{
+    return {reinterpret_cast<std::byte *>(map_.data) + GST_VIDEO_INFO_PLANE_OFFSET(&info_, 0),
+            static_cast<size_t>(GST_VIDEO_INFO_PLANE_STRIDE(&info_, 0))};
+}
+
+void DepthMaps::Map::blank()
+{
+    std::memset(map_.data, 0, map_.size);
+    GST_BUFFER_FLAG_SET(buffer_, GST_BUFFER_FLAG_GAP);
+    GST_BUFFER_FLAG_SET(buffer_, GST_BUFFER_FLAG_CORRUPTED);
+}
+
+/* The buffer, unmapped, for whoever takes it. */
+GstBuffer *DepthMaps::Map::release()
+{
+    if (buffer_)
+        gst_buffer_unmap(buffer_, &map_);
+    return std::exchange(buffer_, nullptr);
+}
+
 DepthMaps::DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, const GstVideoInfo &stack,
                      const GstDepthInfo &depth, const StreamSegment &segment)
-    : stack_(stack)
 {
     for (const std::shared_ptr<DepthOutput> &output : outputs) {
         if (!output->is_linked())
             continue;
         output->prepare(stack, depth, segment);
-        GstVideoInfo info;
-        gst_video_info_set_format(&info, output->format(), GST_VIDEO_INFO_WIDTH(&stack),
-                                  GST_VIDEO_INFO_HEIGHT(&stack));
-        Map map{output, output->acquire(), {}};
-        if (!map.buffer)
-            continue;
+        maps_.push_back(std::make_unique<Map>(output, stack));
         if (output->format() == GST_VIDEO_FORMAT_GRAY16_LE)
-            gst_buffer_add_depth_meta(map.buffer, &depth);
-        /* Without a reference to the buffer, which then can still be given metas. */
-        gst_video_frame_map(
-            &map.frame, &info, map.buffer,
-            static_cast<GstMapFlags>(int{GST_MAP_WRITE} | int{GST_VIDEO_FRAME_MAP_FLAG_NO_REF}));
-        maps_.push_back(std::move(map));
-    }
-}
-
-DepthMaps::~DepthMaps()
-{
-    for (Map &map : maps_) {
-        gst_video_frame_unmap(&map.frame);
-        gst_buffer_unref(map.buffer);
+            gst_buffer_add_depth_meta(maps_.back()->buffer(), &depth);
     }
 }
 
 DepthOutputs DepthMaps::outputs() const
 {
     DepthOutputs outputs;
-    for (const Map &map : maps_) {
-        const OutputPicture picture{static_cast<std::byte *>(GST_VIDEO_FRAME_PLANE_DATA(&map.frame, 0)),
-                                    static_cast<size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&map.frame, 0))};
-        const gchar *name = GST_PAD_NAME(map.output->pad());
+    for (const auto &map : maps_) {
+        const gchar *name = GST_PAD_NAME(map->output().pad());
         if (g_str_equal(name, "sparse"))
-            outputs.sparse = picture;
+            outputs.sparse = map->picture();
         else if (g_str_equal(name, "confidence"))
-            outputs.confidence = picture;
+            outputs.confidence = map->picture();
         else if (g_str_equal(name, "motion"))
-            outputs.motion = picture;
+            outputs.motion = map->picture();
         else
-            outputs.depth = picture;
+            outputs.depth = map->picture();
     }
     return outputs;
 }
 
 void DepthMaps::blank()
 {
-    for (Map &map : maps_) {
-        const auto stride = static_cast<size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&map.frame, 0));
-        std::memset(GST_VIDEO_FRAME_PLANE_DATA(&map.frame, 0), 0,
-                    stride * GST_VIDEO_FRAME_HEIGHT(&map.frame));
-        GST_BUFFER_FLAG_SET(map.buffer, GST_BUFFER_FLAG_GAP);
-        GST_BUFFER_FLAG_SET(map.buffer, GST_BUFFER_FLAG_CORRUPTED);
-    }
+    for (const auto &map : maps_)
+        map->blank();
 }
 
-void DepthMaps::stamp(GstBuffer *stack, guint64 index)
+void DepthMaps::stamp(GstBuffer *stack, const StackClock::Time &time, guint64 index)
 {
-    const gint n = GST_VIDEO_INFO_FPS_N(&stack_), d = GST_VIDEO_INFO_FPS_D(&stack_);
-    GstClockTime pts = GST_BUFFER_PTS(stack), duration = GST_BUFFER_DURATION(stack);
-    if (!GST_CLOCK_TIME_IS_VALID(pts) && n > 0)
-        pts = gst_util_uint64_scale(index, GST_SECOND * d, n);
-    if (!GST_CLOCK_TIME_IS_VALID(duration) && n > 0)
-        duration = gst_util_uint64_scale_int(GST_SECOND, d, n);
-
     const GstReferenceTimestampMeta *clock = gst_buffer_get_reference_timestamp_meta(stack, nullptr);
-    for (Map &map : maps_) {
-        GST_BUFFER_PTS(map.buffer) = pts;
-        GST_BUFFER_DURATION(map.buffer) = duration;
-        GST_BUFFER_OFFSET(map.buffer) = index;
+    for (const auto &map : maps_) {
+        GST_BUFFER_PTS(map->buffer()) = time.start;
+        GST_BUFFER_DURATION(map->buffer()) = time.duration;
+        GST_BUFFER_OFFSET(map->buffer()) = index;
         if (GST_BUFFER_IS_DISCONT(stack))
-            GST_BUFFER_FLAG_SET(map.buffer, GST_BUFFER_FLAG_DISCONT);
+            GST_BUFFER_FLAG_SET(map->buffer(), GST_BUFFER_FLAG_DISCONT);
         if (clock)
-            gst_buffer_add_reference_timestamp_meta(map.buffer, clock->reference, clock->timestamp,
+            gst_buffer_add_reference_timestamp_meta(map->buffer(), clock->reference, clock->timestamp,
                                                     clock->duration);
     }
 }
@@ -93,10 +104,10 @@ void DepthMaps::stamp(GstBuffer *stack, guint64 index)
 void DepthMaps::push(const std::function<void(GstPad *, GstFlowReturn)> &pushed)
 {
     while (!maps_.empty()) {
-        Map map = std::move(maps_.front());
+        const std::unique_ptr<Map> map = std::move(maps_.front());
         maps_.erase(maps_.begin());
-        gst_video_frame_unmap(&map.frame);
-        pushed(map.output->pad(), gst_pad_push(map.output->pad(), map.buffer));
+        GstPad *pad = map->output().pad();
+        pushed(pad, gst_pad_push(pad, map->release()));
     }
 }
 

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "common/stack_clock.h"
 #include "depth_output.h"
 #include "engine/focus_engine.h"
 
@@ -14,36 +15,46 @@ namespace dff {
 /* The pictures that one stack gives: one for each output that is linked. */
 class DepthMaps {
 public:
-    /* Prepares the linked outputs and takes a picture of the stack's size from each. */
+    /* Prepares the linked outputs and takes a picture of the stack's size from each. Throws
+     * std::runtime_error with a user's text if there is no memory for one. */
     DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, const GstVideoInfo &stack,
               const GstDepthInfo &depth, const StreamSegment &segment);
-    ~DepthMaps();
-
-    DepthMaps(const DepthMaps &) = delete;
-    DepthMaps &operator=(const DepthMaps &) = delete;
-
     /* Where the engine writes. */
     DepthOutputs outputs() const;
 
     /* Nothing could be told: all 0, with the flags GAP and CORRUPTED. */
     void blank();
 
-    /* Gives the pictures the time of `stack`, the `index`-th of its stream; without a time of its own that is
-     * index / framerate. */
-    void stamp(GstBuffer *stack, guint64 index);
+    /* Gives the pictures the time and the clock of `stack`, the `index`-th of its stream. */
+    void stamp(GstBuffer *stack, const StackClock::Time &time, guint64 index);
 
     /* Pushes each picture and tells `pushed` what came of it. */
     void push(const std::function<void(GstPad *, GstFlowReturn)> &pushed);
 
 private:
-    struct Map {
-        std::shared_ptr<DepthOutput> output;
-        GstBuffer *buffer;
-        GstVideoFrame frame;
+    /* A picture of an output, mapped as long as this has it. */
+    class Map {
+    public:
+        Map(std::shared_ptr<DepthOutput> output, const GstVideoInfo &stack);
+        ~Map();
+
+        Map(const Map &) = delete;
+        Map &operator=(const Map &) = delete;
+
+        const DepthOutput &output() const { return *output_; }
+        GstBuffer *buffer() const { return buffer_; }
+        OutputPicture picture() const;
+        void blank();
+        GstBuffer *release();
+
+    private:
+        std::shared_ptr<DepthOutput> output_;
+        GstVideoInfo info_;
+        GstBuffer *buffer_;
+        GstMapInfo map_;
     };
 
-    GstVideoInfo stack_;
-    std::vector<Map> maps_;
+    std::vector<std::unique_ptr<Map>> maps_;
 };
 
 } // namespace dff

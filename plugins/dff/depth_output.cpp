@@ -2,6 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depth_output.h"
 
+GST_DEBUG_CATEGORY_EXTERN(dff_depth_debug);
+#define GST_CAT_DEFAULT dff_depth_debug
+
 namespace dff {
 
 DepthOutput::DepthOutput(GstElement *element, GstPad *pad, GstVideoFormat format)
@@ -53,6 +56,7 @@ void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, 
         gst_depth_info_to_caps(&depth, caps);
 
     if (!caps_ || !gst_caps_is_equal(caps, caps_)) {
+        GST_INFO_OBJECT(pad_, "maps are %" GST_PTR_FORMAT, caps);
         gst_caps_replace(&caps_, caps);
         gst_pad_push_event(pad_, gst_event_new_caps(caps));
         pool_.start(info);

@@ -42,7 +42,7 @@ public:
     /* After a flush or a new stream everything is sent again. */
     void restart();
 
-    /* Returns a picture of the prepared size, or nullptr if memory ran out. */
+    /* A picture of the prepared size; PicturePool::acquire(). */
     GstBuffer *acquire() { return pool_.acquire(); }
 
 private:

@@ -12,6 +12,9 @@
  * The request pads `sparse` (depth before it is filled, 0 = unknown), `confidence` (GRAY8) and `motion`
  * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.
  *
+ * A lens that does not move gives a full depth map all the same. Its confidence is next to nothing then, and
+ * a warning says once that no plane is sharper than the others.
+ *
  * The OpenCL device is shared with the neighbours, or given by the application: see
  * gst_context_new_dff_device(). While a first stack takes over a second, as it does when kernels have to be
  * compiled, progress messages with the code "kernels" say so. A live pipeline's latency does not count that.
@@ -31,14 +34,16 @@
 #include "gstcl/mapped_stack.h"
 #include "gstcl/start_progress.h"
 #include "output_pads.h"
+#include "peak_watch.h"
 #include "stack_depth.h"
 
 #include <gst/dff/dff.h>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
-GST_DEBUG_CATEGORY_STATIC(dff_depth_debug);
+GST_DEBUG_CATEGORY(dff_depth_debug);
 #define GST_CAT_DEFAULT dff_depth_debug
 
 namespace {
@@ -64,7 +69,11 @@ struct State {
     dff::StackDepth depth;
     bool has_caps = false;
     dff::StreamSegment segment{};
+    dff::StackClock clock;
     guint64 next_stack = 0;
+    std::string last_warning;
+    dff::PeakWatch peaks;
+    bool told_of_no_peaks = false;
 };
 
 } // namespace
@@ -122,17 +131,64 @@ static void account(GstDffDepth *self, GstClockTime compute_time, bool is_first,
         gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
+/* A cause is told once, however many stacks it costs. */
+static bool is_news(State &state, const std::string &warning)
+{
+    return std::exchange(state.last_warning, warning) != warning;
+}
+
+static void look_for_peaks(GstDffDepth *self, const dff::StackShape &shape,
+                           const dff::OutputPicture &confidence)
+{
+    State &state = *self->state;
+    if (dff::PeakWatch::has_peaks(confidence.pixels, confidence.stride, shape.width, shape.height))
+        return;
+    GST_WARNING_OBJECT(self, "no pixel of stack %" G_GUINT64_FORMAT " is sharper in one plane",
+                       state.next_stack);
+    if (!std::exchange(state.told_of_no_peaks, true))
+        GST_ELEMENT_WARNING(
+            self, STREAM, FAILED,
+            ("All planes are equally sharp, everywhere in the picture: the depth says nothing. Look whether "
+             "the lens moves, and whether each frame is of the plane it is said to be"),
+            (nullptr));
+}
+
 /* Returns false where nothing can be told of the stack. */
 static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *stack, dff::DepthMaps &maps)
 {
     if (GST_BUFFER_FLAG_IS_SET(stack, GST_BUFFER_FLAG_GAP))
         return false;
+    State &state = *self->state;
     try {
-        return self->state->depth.compute(view, maps.outputs());
+        dff::DepthOutputs outputs = maps.outputs();
+        const bool is_due = state.peaks.is_due();
+        if (is_due && !outputs.confidence.pixels)
+            outputs.confidence = {state.peaks.room(size_t{view.shape.width} * view.shape.height).data(),
+                                  view.shape.width};
+        const bool known = state.depth.compute(view, outputs);
+        if (is_due && known)
+            look_for_peaks(self, view.shape, outputs.confidence);
+        return known;
     } catch (const dff::EngineError &error) {
-        dff::post_engine_warning(GST_ELEMENT(self), error);
+        GST_WARNING_OBJECT(self, "%s", error.what());
+        if (is_news(state, error.what()))
+            dff::post_engine_warning(GST_ELEMENT(self), error);
         return false;
     }
+}
+
+/* Returns false, and says why, if the stack says of its planes what cannot be. */
+static bool take_positions(GstDffDepth *self, GstBuffer *stack)
+{
+    State &state = *self->state;
+    const auto problem = state.depth.take_positions(stack);
+    if (!problem)
+        return true;
+    GST_WARNING_OBJECT(self, "no depth of %" GST_PTR_FORMAT ": %s", stack, problem->c_str());
+    if (is_news(state, *problem))
+        GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("A stack has no depth: %s", problem->c_str()),
+                            ("Its depth map is all 0, with the flags GAP and CORRUPTED."));
+    return false;
 }
 
 static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer *buffer)
@@ -141,6 +197,7 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
     State &state = *self->state;
     g_autoptr(GstBuffer) stack = buffer;
 
+    GST_LOG_OBJECT(self, "stack %" G_GUINT64_FORMAT ": %" GST_PTR_FORMAT, state.next_stack, stack);
     if (!state.has_caps) {
         GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
                           ("A stack came before its caps: put a capsfilter with " GST_FOCAL_STACK_CAPS_NAME
@@ -150,29 +207,42 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
     }
     try {
         const dff::MappedStack mapped(state.depth.stack(), stack, state.depth.device());
-        if (const auto settings = changed_settings(state))
+        if (const auto settings = changed_settings(state)) {
+            GST_DEBUG_OBJECT(self, "new settings from stack %" G_GUINT64_FORMAT " on", state.next_stack);
             state.depth.set_settings(*settings);
+        }
         const bool is_first = state.depth.is_at_start();
         std::optional<dff::StartProgress> progress;
         if (is_first)
             progress.emplace(GST_ELEMENT(self));
-        const GstDepthInfo depth = state.depth.prepare(stack, state.next_stack);
+        const GstClockTime asked = gst_util_get_timestamp();
+        state.depth.prepare();
+        if (is_first)
+            GST_INFO_OBJECT(self, "the kernels were waited for %" GST_TIME_FORMAT,
+                            GST_TIME_ARGS(gst_util_get_timestamp() - asked));
+        const bool has_positions = take_positions(self, stack);
+        const GstDepthInfo depth = state.depth.facts(stack, state.next_stack);
         dff::DepthMaps maps(state.outputs.outputs(), state.depth.stack().frame, depth, state.segment);
 
         const GstClockTime start = gst_util_get_timestamp();
-        const bool known = compute(self, mapped.view(), stack, maps);
+        const bool known = has_positions && compute(self, mapped.view(), stack, maps);
         progress.reset();
         if (!known)
             maps.blank();
-        maps.stamp(stack, state.next_stack);
+        maps.stamp(
+            stack,
+            state.clock.next(state.depth.stack().frame, GST_BUFFER_PTS(stack), GST_BUFFER_DURATION(stack)),
+            state.next_stack);
         account(self, gst_util_get_timestamp() - start, is_first, known);
+        GST_DEBUG_OBJECT(self, "stack %" G_GUINT64_FORMAT " (number %" G_GUINT64_FORMAT ") %s",
+                         state.next_stack, depth.sequence, known ? "has depth" : "has no depth");
         state.next_stack++;
         return state.outputs.push(maps);
     } catch (const dff::EngineError &error) {
         dff::post_engine_error(GST_ELEMENT(self), error);
     } catch (const std::invalid_argument &error) {
         GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
-    } catch (const std::runtime_error &error) {
+    } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", error.what()), (nullptr));
     }
     return GST_FLOW_ERROR;
@@ -183,16 +253,27 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
     State &state = *self->state;
     GstFocalStackInfo info;
 
+    state.has_caps = false;
     if (!gst_focal_stack_info_from_caps(&info, caps)) {
         GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
                           ("These are not the caps of a focal stack: %" GST_PTR_FORMAT, caps), (nullptr));
         return FALSE;
     }
-    if (const auto settings = changed_settings(state))
-        state.depth.set_settings(*settings);
-    state.depth.set_stack(info);
-    state.has_caps = true;
-    return TRUE;
+    if (const auto problem = dff::wrong_size(info.frame)) {
+        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", problem->c_str()), (nullptr));
+        return FALSE;
+    }
+    GST_INFO_OBJECT(self, "stacks are %" GST_PTR_FORMAT, caps);
+    try {
+        if (const auto settings = changed_settings(state))
+            state.depth.set_settings(*settings);
+        state.depth.set_stack(info);
+        state.has_caps = true;
+        return TRUE;
+    } catch (const dff::EngineError &error) {
+        dff::post_engine_error(GST_ELEMENT(self), error);
+        return FALSE;
+    }
 }
 
 /* A stream of bytes (a file) becomes a stream in time. */
@@ -200,9 +281,7 @@ static void set_segment(State &state, GstEvent *event)
 {
     const GstSegment *segment = nullptr;
     gst_event_parse_segment(event, &segment);
-    state.segment = {*segment, gst_event_get_seqnum(event)};
-    if (segment->format != GST_FORMAT_TIME)
-        gst_segment_init(&state.segment.segment, GST_FORMAT_TIME);
+    state.segment = {state.clock.begin(*segment), gst_event_get_seqnum(event)};
 }
 
 static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
@@ -335,6 +414,10 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
     if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) {
         state.has_caps = false;
         state.next_stack = 0;
+        state.clock = {};
+        state.last_warning.clear();
+        state.peaks = {};
+        state.told_of_no_peaks = false;
         state.outputs.restart();
         const std::lock_guard lock(state.mutex);
         state.statistics = {};

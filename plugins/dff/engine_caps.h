@@ -4,9 +4,32 @@
 
 #include <gst/dff/dff.h>
 
+#include <optional>
+#include <string>
+
 /* The engine's kernels work on rows of 64 pixels or more, and are tried up to 8192. */
 #define ENGINE_SIZES "width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"
-#define ENGINE_STACK_CAPS                                                                                    \
+
+#define STACK_CAPS_OF(sizes)                                                                                 \
     GST_FOCAL_STACK_CAPS_NAME                                                                                \
-    ", format = (string) " GST_FOCAL_STACK_FORMATS ", " ENGINE_SIZES                                         \
+    ", format = (string) " GST_FOCAL_STACK_FORMATS ", " sizes                                                \
     ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"
+
+/* Pictures of other sizes come after those: whoever can scale does so, and the rest is told why it fails. */
+#define ENGINE_STACK_CAPS                                                                                    \
+    STACK_CAPS_OF(ENGINE_SIZES) "; " STACK_CAPS_OF("width = (int) [ 1, max ], height = (int) [ 1, max ]")
+
+namespace dff {
+
+/* What to tell a user whose pictures the engine does not take; nothing if it does. */
+inline std::optional<std::string> wrong_size(const GstVideoInfo &frame)
+{
+    const int width = GST_VIDEO_INFO_WIDTH(&frame), height = GST_VIDEO_INFO_HEIGHT(&frame);
+    if (width >= 64 && width <= 8192 && height >= 64 && height <= 8192)
+        return std::nullopt;
+    return "The pictures have " + std::to_string(width) + "x" + std::to_string(height) +
+           " pixels; depth from focus takes 64x64 to 8192x8192: crop or scale the frames before they become "
+           "stacks";
+}
+
+} // namespace dff

@@ -9,6 +9,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace dff {
 
@@ -24,7 +25,8 @@ public:
     void set_settings(const DepthSettings &settings);
 
     /* Caps of what comes from here on. Their engine is made in a thread of its own, while the frames of the
-     * first stack still arrive: kernels take their time to be loaded, which a live source must not feel. */
+     * first stack still arrive: kernels take their time to be loaded, which a live source must not feel.
+     * Throws EngineError if the device has no room for them. */
     void set_stack(const GstFocalStackInfo &stack);
     /* What the facts say of the camera. */
     void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
@@ -33,10 +35,17 @@ public:
     /* Whether the next stack to be computed is the first one of its engine. */
     bool is_at_start() const { return times().empty(); }
 
-    /* Makes the engine ready for `stack`, the `index`-th of its stream, and returns the facts of its depth
-     * map. Throws EngineError, or std::invalid_argument with a user's text if the unit cannot be had for this
-     * stack. */
-    GstDepthInfo prepare(GstBuffer *stack, guint64 index);
+    /* Makes the engine. Throws EngineError. */
+    void prepare();
+
+    /* Makes the engine ready for where the planes of `stack` lie. Returns what keeps it from it, in a user's
+     * words: the stack then has no depth. Throws UnknownPositions if the unit needs what no stack has said
+     * yet.
+     */
+    std::optional<std::string> take_positions(GstBuffer *stack);
+
+    /* The facts of the depth map of `stack`, the `index`-th of its stream; of planes as they lay last. */
+    GstDepthInfo facts(GstBuffer *stack, guint64 index) const;
 
     /* FocusEngine::compute() */
     bool compute(const StackView &view, const DepthOutputs &outputs)

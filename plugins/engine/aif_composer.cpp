@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/aif_composer.h"
 
+#include "engine/engine_error.h"
 #include "engine/opencl/program.h"
 
 #include <algorithm>
@@ -93,6 +94,14 @@ void AifComposer::write_fixed_positions(const DepthEncoder &encoder)
 void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend blend,
                           std::span<std::byte> picture, std::span<const RowLayout> layout)
 {
+    bool fits = layout.size() == components_.size() &&
+                lies_within({shape_.width, shape_.height, 1, 1, sizeof(cl_ushort)}, {0, depth.stride},
+                            depth.memory.size());
+    for (size_t c = 0; fits && c < components_.size(); c++)
+        fits = lies_within(components_[c], layout[c], picture.size());
+    if (!fits)
+        throw EngineError(EngineError::Kind::Failed,
+                          "The depth map or the picture does not have the stack's size");
     translate_errors(*device_, [&] {
         const Pictures pictures{depth_.upload(depth.memory), picture_.target(picture),
                                 depth.stride / sizeof(cl_ushort)};

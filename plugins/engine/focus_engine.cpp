@@ -14,27 +14,7 @@ namespace {
 std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackShape &shape,
                                   const DepthParameters &parameters)
 {
-    uint64_t bytes = 0;
-    for (const Component &component : shape.components())
-        bytes += uint64_t{component.width} * component.height * component.sample_bytes * shape.planes;
-    if (bytes > device->global_memory() / 2 || bytes > device->largest_allocation())
-        throw EngineError(
-            EngineError::Kind::TooLarge,
-            "A stack of " + std::to_string(shape.planes) + " planes of " + std::to_string(shape.width) + "x" +
-                std::to_string(shape.height) + " has " + std::to_string(bytes >> 20) +
-                " MiB; the OpenCL device " + device->name() + " has " +
-                std::to_string(device->global_memory() >> 20) + " MiB and takes " +
-                std::to_string(device->largest_allocation() >> 20) +
-                " MiB at once, and at most half may be used: use smaller pictures, fewer planes or "
-                "another device");
-    const uint64_t work = parameters.method == Method::Volume ? VolumeMethod::memory(shape, parameters) : 0;
-    if (bytes + work > device->global_memory() / 2)
-        throw EngineError(EngineError::Kind::TooLarge,
-                          "method=volume needs " + std::to_string(work >> 20) + " MiB beside the stack's " +
-                              std::to_string(bytes >> 20) + "; the OpenCL device " + device->name() +
-                              " has " + std::to_string(device->global_memory() >> 20) +
-                              " MiB, and at most half may be used: use a larger scale, smaller pictures, "
-                              "fewer planes or another device");
+    FocusEngine::require_room(*device, shape, parameters);
     return device;
 }
 
@@ -49,6 +29,22 @@ std::unique_ptr<DepthMethod> make_method(CommandQueue &queue, const StackShape &
 }
 
 } // namespace
+
+void FocusEngine::require_room(const Device &device, const StackShape &shape,
+                               const DepthParameters &parameters)
+{
+    dff::require_room(device, shape);
+    const uint64_t bytes = bytes_of(shape);
+    const uint64_t work = parameters.method == Method::Volume ? VolumeMethod::memory(shape, parameters) : 0;
+    if (bytes + work > device.global_memory() / 2)
+        throw EngineError(EngineError::Kind::TooLarge,
+                          "method=volume needs " + std::to_string(work) + " bytes (" +
+                              std::to_string(work >> 20) + " MiB) beside the stack's " +
+                              std::to_string(bytes) + "; the OpenCL device " + device.name() + " has " +
+                              std::to_string(device.global_memory()) +
+                              ", and at most half may be used: use a larger scale, smaller pictures, "
+                              "fewer planes or another device");
+}
 
 FocusEngine::FocusEngine(std::shared_ptr<Device> device, const StackShape &shape,
                          const DepthParameters &parameters)

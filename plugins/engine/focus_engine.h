@@ -27,8 +27,12 @@ struct DepthOutputs {
 /* Depth from focal stacks of one shape. Not to be used from two threads at once. */
 class FocusEngine {
 public:
-    /* Throws EngineError: TooLarge before anything is allocated if stack and method would need over half of
-     * the device's memory. */
+    /* Throws EngineError (TooLarge) if stack and method would need over half of the device's memory, or the
+     * stack more than the device takes at once. */
+    static void require_room(const Device &device, const StackShape &shape,
+                             const DepthParameters &parameters);
+
+    /* Throws EngineError: as require_room() before anything is allocated. */
     FocusEngine(std::shared_ptr<Device> device, const StackShape &shape, const DepthParameters &parameters);
 
     /* What the pixels of the depth maps mean from now on; DepthEncoder::index() until then. */

@@ -27,6 +27,34 @@ std::vector<Component> StackShape::components() const
     return {};
 }
 
+uint64_t bytes_of(const StackShape &shape)
+{
+    uint64_t bytes = 0;
+    for (const Component &component : shape.components())
+        bytes += uint64_t{component.width} * component.height * component.sample_bytes * shape.planes;
+    return bytes;
+}
+
+bool lies_within(const Component &component, const RowLayout &rows, uint64_t bytes)
+{
+    /* Without overflow, whatever offset and stride say. */
+    const uint64_t row = uint64_t{component.width} * component.sample_bytes, last = component.height - 1;
+    if (rows.stride < row || rows.offset > bytes || bytes - rows.offset < row)
+        return false;
+    return last == 0 || rows.stride <= (bytes - rows.offset - row) / last;
+}
+
+bool lies_within_memory(const StackView &stack)
+{
+    const std::vector<Component> components = stack.shape.components();
+    if (stack.layout.size() != components.size() * stack.shape.planes)
+        return false;
+    for (size_t i = 0; i < stack.layout.size(); i++)
+        if (!lies_within(components[i / stack.shape.planes], stack.layout[i], stack.memory.size()))
+            return false;
+    return true;
+}
+
 std::vector<RowLayout> packed_layout(const StackShape &shape)
 {
     const std::vector<Component> components = shape.components();

@@ -34,6 +34,9 @@ struct StackShape {
     bool operator==(const StackShape &) const = default;
 };
 
+/* Bytes of a stack without any padding. */
+uint64_t bytes_of(const StackShape &shape);
+
 /* Where a component's rows lie in the stack's memory, in bytes. Laid out as the kernels' ulong2. */
 struct RowLayout {
     uint64_t offset;
@@ -64,6 +67,12 @@ struct StackView {
     /* Of this memory, where other engines get the same stack; nullptr: each engine uploads it. */
     std::shared_ptr<SharedUpload> upload = nullptr;
 };
+
+/* Whether the layout has a place for each component of each plane, and all of it lies in the memory. */
+bool lies_within_memory(const StackView &stack);
+
+/* Whether the rows of `component` lie in `bytes`. */
+bool lies_within(const Component &component, const RowLayout &rows, uint64_t bytes);
 
 /* Layout of planes that follow each other in one memory without any padding. For tests and plain
  * applications. */

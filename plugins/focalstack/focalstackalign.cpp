@@ -28,6 +28,7 @@
  */
 #include "focalstack/focalstackalign.h"
 
+#include "common/stack_clock.h"
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/focalstackalign_properties.h"
@@ -46,7 +47,7 @@ namespace {
 struct FocalStackAlignState {
     /* Guarded by the sink pad's stream lock. */
     std::optional<dff::StackPool> pool;
-    guint64 stacks_of_segment = 0;
+    dff::StackClock clock;
     std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
 
     /* Guarded by the object's lock. */
@@ -128,25 +129,16 @@ void announce_latency(GstFocalStackAlign *self, GstClockTime measured)
     gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
 }
 
-/* A stack that came without a time is taken to be number k since the segment's start. */
-void complete_time(const GstFocalStackInfo &info, guint64 k, GstBuffer *stack)
-{
-    const guint64 numerator = static_cast<guint64>(GST_VIDEO_INFO_FPS_N(&info.frame));
-    const guint64 denominator = static_cast<guint64>(GST_VIDEO_INFO_FPS_D(&info.frame));
-
-    if (GST_BUFFER_PTS_IS_VALID(stack) || numerator == 0)
-        return;
-    GST_BUFFER_PTS(stack) = gst_util_uint64_scale(k, GST_SECOND * denominator, numerator);
-    GST_BUFFER_DURATION(stack) =
-        gst_util_uint64_scale(k + 1, GST_SECOND * denominator, numerator) - GST_BUFFER_PTS(stack);
-}
-
 gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
 {
     GstFocalStackInfo info;
 
     if (!gst_focal_stack_info_from_caps(&info, caps))
         return FALSE;
+    if (const auto problem = dff::too_large(info)) {
+        GST_ELEMENT_ERROR(base, RESOURCE, NO_SPACE_LEFT, ("%s", problem->c_str()), (nullptr));
+        return FALSE;
+    }
     GST_FOCAL_STACK_ALIGN(base)->state->pool.emplace(info);
     return TRUE;
 }
@@ -172,7 +164,10 @@ GstFlowReturn prepare_output_buffer(GstBaseTransform *base, GstBuffer *input, Gs
     dff::BufferPtr stack = self->state->pool->acquire();
 
     if (!stack) {
-        GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT, ("There is no memory for another focal stack."),
+        GST_ELEMENT_ERROR(self, RESOURCE, NO_SPACE_LEFT,
+                          ("There is no memory for another focal stack of %" G_GSIZE_FORMAT
+                           " bytes: lower planes, or the width and height of the pictures.",
+                           gst_focal_stack_info_get_size(&self->state->pool->info())),
                           (nullptr));
         return GST_FLOW_ERROR;
     }
@@ -213,7 +208,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
         GST_ELEMENT_ERROR(self, STREAM, WRONG_TYPE, ("%s", mismatch.what()), (nullptr));
         return GST_FLOW_ERROR;
     }
-    complete_time(info, self->state->stacks_of_segment++, output);
+    self->state->clock.stamp(output, info.frame);
     {
         const ObjectLock lock(self);
         self->state->statistics.add(std::move(alignments));
@@ -227,10 +222,8 @@ gboolean sink_event(GstBaseTransform *base, GstEvent *event)
     if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT) {
         const GstSegment *segment = nullptr;
         gst_event_parse_segment(event, &segment);
-        GST_FOCAL_STACK_ALIGN(base)->state->stacks_of_segment = 0;
+        const GstSegment time = GST_FOCAL_STACK_ALIGN(base)->state->clock.begin(*segment);
         if (segment->format != GST_FORMAT_TIME) {
-            GstSegment time;
-            gst_segment_init(&time, GST_FORMAT_TIME);
             GstEvent *replacement = gst_event_new_segment(&time);
             gst_event_set_seqnum(replacement, gst_event_get_seqnum(event));
             gst_event_unref(event);
@@ -283,7 +276,7 @@ gboolean start(GstBaseTransform *base)
     if (!load_calibration(GST_FOCAL_STACK_ALIGN(base)))
         return FALSE;
     const ObjectLock lock(base);
-    state->stacks_of_segment = 0;
+    state->clock = {};
     state->statistics = {};
     state->latency = 0;
     return TRUE;

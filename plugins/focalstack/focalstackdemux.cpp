@@ -75,6 +75,11 @@ GstFlowReturn chain(GstPad *, GstObject *parent, GstBuffer *buffer)
     if (!self->state->has_caps)
         return GST_FLOW_NOT_NEGOTIATED;
 
+    GST_LOG_OBJECT(self, "taking apart %" GST_PTR_FORMAT, stack.get());
+    g_autoptr(GError) doubt = nullptr;
+    gst_focal_stack_info_get_meta(&self->state->splitter.shape(), stack.get(), &doubt);
+    if (doubt)
+        GST_WARNING_OBJECT(self, "%s: the frames' labels are counted instead", doubt->message);
     self->state->splitter.begin(stack.get());
     GstFlowReturn flow = GST_FLOW_OK;
     for (unsigned z = 0; z < self->state->splitter.shape().planes && flow == GST_FLOW_OK; z++)
@@ -95,6 +100,7 @@ gboolean take_caps(GstFocalStackDemux *self, GstEvent *event)
     self->state->splitter.set_shape(shape);
     const GstVideoInfo frame = self->state->splitter.frame_info();
     g_autoptr(GstCaps) frame_caps = gst_video_info_to_caps(&frame);
+    GST_INFO_OBJECT(self, "frames are %" GST_PTR_FORMAT, frame_caps);
     return gst_pad_push_event(self->source, gst_event_new_caps(frame_caps));
 }
 
@@ -102,11 +108,10 @@ gboolean take_segment(GstFocalStackDemux *self, GstEvent *event)
 {
     const GstSegment *segment = nullptr;
     gst_event_parse_segment(event, &segment);
+    const GstSegment time = self->state->splitter.begin_segment(*segment);
     if (segment->format == GST_FORMAT_TIME)
         return gst_pad_push_event(self->source, event);
 
-    GstSegment time;
-    gst_segment_init(&time, GST_FORMAT_TIME);
     GstEvent *replacement = gst_event_new_segment(&time);
     gst_event_set_seqnum(replacement, gst_event_get_seqnum(event));
     gst_event_unref(event);

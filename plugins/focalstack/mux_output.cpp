@@ -10,6 +10,7 @@ namespace dff {
 void MuxOutput::restart()
 {
     gst_segment_init(&segment_, GST_FORMAT_TIME);
+    clock_ = {};
     seqnum_ = GST_SEQNUM_INVALID;
     has_caps_ = false;
     segment_due_ = true;
@@ -30,11 +31,7 @@ void MuxOutput::begin_own_stream()
 
 void MuxOutput::set_segment(const GstSegment &segment, guint32 seqnum)
 {
-    /* Where the input does not count in time, the stacks' times count from 0. */
-    if (segment.format == GST_FORMAT_TIME)
-        gst_segment_copy_into(&segment, &segment_);
-    else
-        gst_segment_init(&segment_, GST_FORMAT_TIME);
+    segment_ = clock_.begin(segment);
     seqnum_ = seqnum;
     segment_due_ = true;
     discont_ = true;
@@ -60,21 +57,6 @@ void MuxOutput::send_due_segment()
     segment_due_ = false;
 }
 
-/* Frames without times are taken to come at the caps' rate from 0 on. */
-void MuxOutput::complete_time(GstBuffer *stack) const
-{
-    const gint numerator = GST_VIDEO_INFO_FPS_N(&info_.frame);
-    const gint denominator = GST_VIDEO_INFO_FPS_D(&info_.frame);
-    if (GST_BUFFER_PTS_IS_VALID(stack) || numerator == 0)
-        return;
-    const guint64 k = GST_BUFFER_OFFSET(stack);
-    const auto time_of = [&](guint64 stacks) {
-        return gst_util_uint64_scale(stacks, GST_SECOND * denominator, numerator);
-    };
-    GST_BUFFER_PTS(stack) = time_of(k);
-    GST_BUFFER_DURATION(stack) = time_of(k + 1) - time_of(k);
-}
-
 GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
 {
     if (!outcome.stack) {
@@ -87,7 +69,7 @@ GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
         post_loss(outcome.time, statistics);
         return GST_FLOW_OK;
     }
-    complete_time(outcome.stack.get());
+    clock_.stamp(outcome.stack.get(), info_.frame);
     if (discont_)
         GST_BUFFER_FLAG_SET(outcome.stack.get(), GST_BUFFER_FLAG_DISCONT);
     discont_ = false;

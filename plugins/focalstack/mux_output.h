@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "common/stack_clock.h"
 #include "focalstack/stack_maker.h"
 
 #include <gst/gst.h>
@@ -41,13 +42,13 @@ public:
 
 private:
     void send_due_segment();
-    void complete_time(GstBuffer *stack) const;
     void post_loss(const TimeSpan &time, const MuxStatistics &statistics);
 
     GstElement *element_;
     GstPad *source_;
     GstFocalStackInfo info_{};
     GstSegment segment_{};
+    StackClock clock_;
     guint32 seqnum_ = GST_SEQNUM_INVALID; /* of its event */
     bool has_caps_ = false;
     bool segment_due_ = true;

@@ -3,6 +3,7 @@
 /* How MuxCore makes stacks of frames; all with its stream lock held. */
 #include "focalstack/mux_core.h"
 
+#include "common/whole_frame.h"
 #include "focalstack/frame_layout.h"
 
 #include <bit>
@@ -76,6 +77,10 @@ GstFlowReturn MuxCore::use_shape(const MuxInput &input, const GstFocalStackInfo 
         return flow;
     if (!inputs_.make_sense(element_, settings_.planes))
         return GST_FLOW_ERROR;
+    if (const auto problem = too_large(shape)) {
+        GST_ELEMENT_ERROR(element_, RESOURCE, NO_SPACE_LEFT, ("%s", problem->c_str()), (nullptr));
+        return GST_FLOW_ERROR;
+    }
     if (!output_.set_shape(shape))
         return GST_FLOW_NOT_NEGOTIATED;
 
@@ -92,14 +97,21 @@ GstFlowReturn MuxCore::put(const MuxInput &input, PlaneFrame &frame)
         refuse_damaged(frame, describe_misfit(input.info, gst_buffer_get_size(frame.buffer)));
         return GST_FLOW_OK;
     }
+    if (!is_whole(picture, input.info)) {
+        gst_video_frame_unmap(&picture);
+        refuse_damaged(frame, "its GstVideoMeta has another size than its caps, or leads out of its memory");
+        return GST_FLOW_OK;
+    }
     frame.picture = &picture;
     const bool put = maker_->add(frame);
     frame.picture = nullptr;
     gst_video_frame_unmap(&picture);
     if (!put) {
-        GST_ELEMENT_ERROR(
-            element_, RESOURCE, NO_SPACE_LEFT, ("There is no memory for a focal stack."),
-            ("%" G_GSIZE_FORMAT " bytes a stack", gst_focal_stack_info_get_size(&maker_->info())));
+        GST_ELEMENT_ERROR(element_, RESOURCE, NO_SPACE_LEFT,
+                          ("There is no memory for another focal stack of %" G_GSIZE_FORMAT
+                           " bytes: lower planes, or the width and height of the pictures.",
+                           gst_focal_stack_info_get_size(&maker_->info())),
+                          (nullptr));
         return GST_FLOW_ERROR;
     }
     return send_outcomes(&input);

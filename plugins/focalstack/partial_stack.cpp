@@ -13,7 +13,6 @@ namespace {
 
 /* Kernels read 16 pixels at a time, a little over both ends of a stack. */
 constexpr gsize slack = 64;
-constexpr gsize page_mask = 4095;
 
 std::shared_ptr<GstBuffer> reference_times(GstBuffer *frame)
 {
@@ -36,34 +35,32 @@ void copy_reference_times(GstBuffer *from, GstBuffer *to)
     }
 }
 
-StackPool::StackPool(const GstFocalStackInfo &info) : info_(info), pool_(gst_buffer_pool_new())
+std::optional<std::string> too_large(const GstFocalStackInfo &info)
 {
-    g_autoptr(GstCaps) caps = gst_focal_stack_info_to_caps(&info_);
-    GstAllocationParams params;
-    gst_allocation_params_init(&params);
-    params.flags = static_cast<GstMemoryFlags>(GST_MEMORY_FLAG_ZERO_PREFIXED | GST_MEMORY_FLAG_ZERO_PADDED);
-    params.align = page_mask;
-    params.prefix = slack;
-    params.padding = slack;
-
-    GstStructure *config = gst_buffer_pool_get_config(pool_);
-    gst_buffer_pool_config_set_params(config, caps, gst_focal_stack_info_get_size(&info_), 0, 0);
-    gst_buffer_pool_config_set_allocator(config, nullptr, &params);
-    gst_buffer_pool_set_config(pool_, config);
-    gst_buffer_pool_set_active(pool_, TRUE);
+    const uint64_t bytes = gst_focal_stack_info_get_size(&info), most = largest_picture();
+    if (bytes <= most)
+        return std::nullopt;
+    g_autofree gchar *text =
+        g_strdup_printf("A stack of %u planes of %dx%d %s has %" G_GUINT64_FORMAT
+                        " bytes; on this machine it may have %" G_GUINT64_FORMAT
+                        ", half of the memory: lower planes, or the width and height of the pictures",
+                        info.planes, GST_VIDEO_INFO_WIDTH(&info.frame), GST_VIDEO_INFO_HEIGHT(&info.frame),
+                        GST_VIDEO_INFO_NAME(&info.frame), bytes, most);
+    return text;
 }
 
-StackPool::~StackPool()
+StackPool::StackPool(const GstFocalStackInfo &info)
+    : info_(info), pool_(gst_focal_stack_info_get_size(&info), slack)
 {
-    gst_buffer_pool_set_active(pool_, FALSE);
-    gst_object_unref(pool_);
 }
 
 BufferPtr StackPool::acquire()
 {
-    GstBuffer *buffer = nullptr;
-    if (gst_buffer_pool_acquire_buffer(pool_, &buffer, nullptr) != GST_FLOW_OK)
+    GstMemory *memory = pool_.acquire();
+    if (!memory)
         return nullptr;
+    GstBuffer *buffer = gst_buffer_new();
+    gst_buffer_append_memory(buffer, memory);
     gst_focal_stack_info_add_video_metas(&info_, buffer);
     return BufferPtr(buffer);
 }
@@ -98,13 +95,21 @@ void PartialStack::copy_picture(const PartialStack &other, unsigned from, unsign
     GstMapInfo target;
     if (!gst_buffer_map(buffer_.get(), &target, GST_MAP_READWRITE))
         return;
-    if (other.buffer_ == buffer_)
-        std::copy_n(target.data + from * size, size, target.data + to * size);
-    else if (gst_buffer_map(other.buffer_.get(), &source, GST_MAP_READ)) {
-        std::copy_n(source.data + from * size, size, target.data + to * size);
+    if (other.buffer_ == buffer_) {
+        if (holds_all(target))
+            std::copy_n(target.data + from * size, size, target.data + to * size);
+    } else if (gst_buffer_map(other.buffer_.get(), &source, GST_MAP_READ)) {
+        if (holds_all(target) && holds_all(source))
+            std::copy_n(source.data + from * size, size, target.data + to * size);
         gst_buffer_unmap(other.buffer_.get(), &source);
     }
     gst_buffer_unmap(buffer_.get(), &target);
+}
+
+/* A stack that was sent may have been cut short by somebody downstream who then had it alone. */
+bool PartialStack::holds_all(const GstMapInfo &map) const
+{
+    return map.size >= gst_focal_stack_info_get_size(&info_);
 }
 
 void PartialStack::repeat(unsigned from, unsigned to, double power)

@@ -2,10 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "common/memory_pool.h"
+
 #include <gst/dff/dff.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace dff {
@@ -18,15 +22,15 @@ using BufferPtr = std::unique_ptr<GstBuffer, BufferUnref>;
 /* Adds the GstReferenceTimestampMetas of one buffer to another. */
 void copy_reference_times(GstBuffer *from, GstBuffer *to);
 
+/* What to tell a user whose machine cannot hold such stacks; nothing where it can. */
+std::optional<std::string> too_large(const GstFocalStackInfo &info);
+
 /* Stacks of one shape: each in one memory of its own, with 64 bytes of slack at both ends and one
  * GstVideoMeta a plane. Without an upper limit, so that nobody downstream who keeps stacks can stop the
  * stream; what comes back is used again. A stack may outlive its pool. */
 class StackPool {
 public:
     explicit StackPool(const GstFocalStackInfo &info);
-    ~StackPool();
-    StackPool(const StackPool &) = delete;
-    StackPool &operator=(const StackPool &) = delete;
 
     const GstFocalStackInfo &info() const { return info_; }
 
@@ -35,7 +39,7 @@ public:
 
 private:
     GstFocalStackInfo info_;
-    GstBufferPool *pool_;
+    MemoryPool pool_;
 };
 
 /* The time of a frame or stack on its stream: both may be GST_CLOCK_TIME_NONE. */
@@ -88,6 +92,7 @@ private:
 
     unsigned first_of(uint64_t fresh) const;
     void copy_picture(const PartialStack &other, unsigned from, unsigned to);
+    bool holds_all(const GstMapInfo &map) const;
 
     GstFocalStackInfo info_;
     BufferPtr buffer_;

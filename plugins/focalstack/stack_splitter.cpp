@@ -21,28 +21,11 @@ GstVideoInfo StackSplitter::frame_info() const
     return frame;
 }
 
-/* A stack without times is the k-th at the caps' rate. */
-TimeSpan StackSplitter::stack_time(GstBuffer *stack) const
-{
-    const auto rate = static_cast<guint64>(GST_VIDEO_INFO_FPS_N(&shape_.frame));
-    const guint64 second = GST_SECOND * GST_VIDEO_INFO_FPS_D(&shape_.frame);
-    TimeSpan time{GST_BUFFER_PTS(stack), GST_BUFFER_DURATION(stack)};
-    if (rate == 0)
-        return time;
-    if (!GST_CLOCK_TIME_IS_VALID(time.duration))
-        time.duration = gst_util_uint64_scale(second, 1, rate);
-    if (!GST_CLOCK_TIME_IS_VALID(time.start)) {
-        time.start = gst_util_uint64_scale(number_, second, rate);
-        time.duration = gst_util_uint64_scale(number_ + 1, second, rate) - time.start;
-    }
-    return time;
-}
-
 void StackSplitter::begin(GstBuffer *stack)
 {
     stack_ = stack;
     number_ = stacks_++;
-    time_ = stack_time(stack);
+    time_ = clock_.next(shape_.frame, GST_BUFFER_PTS(stack), GST_BUFFER_DURATION(stack));
 }
 
 void StackSplitter::set_time(GstBuffer *frame, unsigned plane) const
@@ -60,7 +43,7 @@ void StackSplitter::set_time(GstBuffer *frame, unsigned plane) const
 
 void StackSplitter::add_focus(GstBuffer *frame, unsigned plane) const
 {
-    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack_);
+    const GstFocalStackMeta *meta = gst_focal_stack_info_get_meta(&shape_, stack_, nullptr);
     GstFocusInfo focus;
     if (!meta || !gst_focal_stack_meta_get_focus(meta, plane, &focus)) {
         gst_focus_info_init(&focus);

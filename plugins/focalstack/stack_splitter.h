@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "common/stack_clock.h"
 #include "focalstack/partial_stack.h"
 
 #include <cstdint>
@@ -17,8 +18,11 @@ public:
     /* Rate, format and size of the frames. */
     GstVideoInfo frame_info() const;
 
-    /* Count the stacks from 0 again, whose number is their time where they have none. */
+    /* Count the stacks from 0 again, whose number is their sweep's where they have no meta. */
     void restart() { stacks_ = 0; }
+
+    /* StackClock::begin() */
+    GstSegment begin_segment(const GstSegment &segment) { return clock_.begin(segment); }
 
     /* Begins with the next stack, which stays the caller's as long as frames are taken from it. */
     void begin(GstBuffer *stack);
@@ -27,13 +31,13 @@ public:
     BufferPtr frame(unsigned plane, GError **error) const;
 
 private:
-    TimeSpan stack_time(GstBuffer *stack) const;
     void set_time(GstBuffer *frame, unsigned plane) const;
     void add_focus(GstBuffer *frame, unsigned plane) const;
 
     GstFocalStackInfo shape_{};
     GstBuffer *stack_ = nullptr;
-    TimeSpan time_;
+    StackClock clock_;
+    StackClock::Time time_{GST_CLOCK_TIME_NONE, GST_CLOCK_TIME_NONE};
     uint64_t number_ = 0;
     uint64_t stacks_ = 0;
 };

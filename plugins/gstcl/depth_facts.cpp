@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace dff {
 
@@ -33,9 +32,12 @@ GstDepthUnit unit_of(DepthUnit unit)
 
 } // namespace
 
-PlanePositions plane_positions(GstBuffer *stack)
+PlanePositions plane_positions(const GstFocalStackInfo &info, GstBuffer *stack)
 {
-    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
+    g_autoptr(GError) error = nullptr;
+    const GstFocalStackMeta *meta = gst_focal_stack_info_get_meta(&info, stack, &error);
+    if (error)
+        throw std::invalid_argument(error->message);
     PlanePositions positions;
     for (guint z = 0; meta && z < meta->planes; z++) {
         GstFocusInfo focus;
@@ -57,11 +59,11 @@ DepthEncoder make_encoder(GstDepthUnit unit, unsigned planes, const PlanePositio
 
     const bool in_dioptres = unit == GST_DEPTH_UNIT_DIOPTRE || unit == GST_DEPTH_UNIT_MILLIMETRE;
     if (in_dioptres && positions.powers.empty())
-        throw std::invalid_argument(
+        throw UnknownPositions(
             "The unit needs the planes' powers in dioptres, which the stack does not say: set "
             "near and far on the source or on lenssweeptag, or use unit=index");
     if (!in_dioptres && positions.positions_um.empty())
-        throw std::invalid_argument(
+        throw UnknownPositions(
             "The unit needs the planes' stage positions, which the stack does not say: use "
             "unit=index");
     if (unit == GST_DEPTH_UNIT_MICROMETRE)

@@ -6,6 +6,7 @@
 
 #include <gst/dff/dff.h>
 #include <optional>
+#include <stdexcept>
 
 namespace dff {
 
@@ -17,11 +18,18 @@ struct PlanePositions {
     bool operator==(const PlanePositions &) const = default;
 };
 
-/* From the stack's meta; nothing is known of a stack without one. */
-PlanePositions plane_positions(GstBuffer *stack);
+/* From the stack's meta; nothing is known of a stack without one. Throws std::invalid_argument with a user's
+ * text if the meta cannot be the one of such a stack: gst_focal_stack_info_get_meta(). */
+PlanePositions plane_positions(const GstFocalStackInfo &info, GstBuffer *stack);
 
-/* How to write depth maps in the unit that was asked for. Throws std::invalid_argument with a user's text if
- * the unit needs positions that are not known, or if they are not in order. */
+/* A unit was asked for which needs what nobody said. */
+class UnknownPositions : public std::invalid_argument {
+public:
+    using std::invalid_argument::invalid_argument;
+};
+
+/* How to write depth maps in the unit that was asked for. Throws UnknownPositions if the unit needs positions
+ * that are not known, and std::invalid_argument if they are not in order, with a user's text. */
 DepthEncoder make_encoder(GstDepthUnit unit, unsigned planes, const PlanePositions &positions);
 
 /* How to read a depth map with such a meta, of a stack whose planes lie at `positions`; where these are not

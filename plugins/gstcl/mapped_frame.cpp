@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/mapped_frame.h"
 
+#include "common/whole_frame.h"
+
 #include <stdexcept>
 
 namespace dff {
@@ -10,6 +12,11 @@ MappedFrame::MappedFrame(const GstVideoInfo &info, GstBuffer *buffer, GstMapFlag
 {
     if (!gst_video_frame_map(&frame_, &info, buffer, flags))
         throw std::runtime_error("A frame's memory does not hold what its caps say");
+    if (is_whole(frame_, info))
+        return;
+    gst_video_frame_unmap(&frame_);
+    throw std::runtime_error(
+        "A frame's GstVideoMeta has another size than its caps, or leads out of its memory");
 }
 
 std::span<std::byte> MappedFrame::memory() const

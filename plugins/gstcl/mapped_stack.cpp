@@ -4,7 +4,6 @@
 
 #include "gstcl/stack_upload.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 namespace dff {
@@ -50,13 +49,13 @@ std::vector<RowLayout> locate_planes(const GstFocalStackInfo &info, GstBuffer *b
 }
 
 /* None of planes that were lost or repeat another's picture. */
-std::vector<std::optional<PlaneIdentity>> identify_planes(guint planes, GstBuffer *buffer)
+std::vector<std::optional<PlaneIdentity>> identify_planes(const GstFocalStackInfo &info, GstBuffer *buffer)
 {
-    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(buffer);
+    const GstFocalStackMeta *meta = gst_focal_stack_info_get_meta(&info, buffer, nullptr);
     if (!meta)
         return {};
-    std::vector<std::optional<PlaneIdentity>> identities(planes);
-    for (guint z = 0; z < std::min(planes, meta->planes); z++) {
+    std::vector<std::optional<PlaneIdentity>> identities(info.planes);
+    for (guint z = 0; z < info.planes; z++) {
         GstFocusInfo focus;
         const bool own = ((meta->missing | meta->repeated) >> z & 1) == 0;
         if (own && gst_focal_stack_meta_get_focus(meta, z, &focus))
@@ -79,12 +78,16 @@ MappedStack::MappedStack(const GstFocalStackInfo &info, GstBuffer *buffer, const
 {
     view_.shape = stack_shape(info);
     view_.layout = locate_planes(info, buffer);
-    view_.identities = identify_planes(info.planes, buffer);
+    view_.identities = identify_planes(info, buffer);
     if (!device.works_in_place())
         view_.upload = shared_upload(buffer);
     if (!gst_buffer_map(buffer, &map_, GST_MAP_READ))
         throw std::runtime_error("The stack's memory cannot be read");
     view_.memory = {reinterpret_cast<const std::byte *>(map_.data), map_.size};
+    if (lies_within_memory(view_))
+        return;
+    gst_buffer_unmap(buffer, &map_);
+    throw std::runtime_error("The stack's memory is shorter than it was said to be");
 }
 
 } // namespace dff

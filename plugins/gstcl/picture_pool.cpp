@@ -2,31 +2,30 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/picture_pool.h"
 
+#include <stdexcept>
+
 namespace dff {
 
 void PicturePool::start(const GstVideoInfo &info)
 {
-    g_autoptr(GstCaps) caps = gst_video_info_to_caps(&info);
-
-    stop();
-    pool_ = gst_video_buffer_pool_new();
-    GstStructure *config = gst_buffer_pool_get_config(pool_);
-    gst_buffer_pool_config_set_params(config, caps, static_cast<guint>(GST_VIDEO_INFO_SIZE(&info)), 0, 0);
-    gst_buffer_pool_set_config(pool_, config);
-    gst_buffer_pool_set_active(pool_, TRUE);
-}
-
-void PicturePool::stop()
-{
-    if (pool_)
-        gst_buffer_pool_set_active(pool_, FALSE);
-    gst_clear_object(&pool_);
+    info_ = info;
+    pool_.emplace(GST_VIDEO_INFO_SIZE(&info));
 }
 
 GstBuffer *PicturePool::acquire()
 {
-    GstBuffer *buffer = nullptr;
-    return gst_buffer_pool_acquire_buffer(pool_, &buffer, nullptr) == GST_FLOW_OK ? buffer : nullptr;
+    GstMemory *memory = pool_->bytes() <= largest_picture() ? pool_->acquire() : nullptr;
+    if (!memory) {
+        g_autofree gchar *text =
+            g_strdup_printf("There is no memory for a picture of %dx%d %s, which has %" G_GSIZE_FORMAT
+                            " bytes: use smaller pictures",
+                            GST_VIDEO_INFO_WIDTH(&info_), GST_VIDEO_INFO_HEIGHT(&info_),
+                            GST_VIDEO_INFO_NAME(&info_), pool_->bytes());
+        throw std::runtime_error(text);
+    }
+    GstBuffer *buffer = gst_buffer_new();
+    gst_buffer_append_memory(buffer, memory);
+    return buffer;
 }
 
 } // namespace dff

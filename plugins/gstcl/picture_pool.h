@@ -2,7 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "common/memory_pool.h"
+
 #include <gst/video/video.h>
+#include <optional>
 
 namespace dff {
 
@@ -10,21 +13,17 @@ namespace dff {
  * pool is gone. */
 class PicturePool {
 public:
-    PicturePool() = default;
-    ~PicturePool() { stop(); }
-
-    PicturePool(const PicturePool &) = delete;
-    PicturePool &operator=(const PicturePool &) = delete;
-
     /* From here on acquire() gives pictures of this kind. */
     void start(const GstVideoInfo &info);
-    void stop();
+    void stop() { pool_.reset(); }
 
-    /* Returns a picture without timestamps or metas, or nullptr if memory ran out. */
+    /* A picture without timestamps or metas. Throws std::runtime_error with a user's text if there is no
+     * memory for it, or too little for any such picture. */
     GstBuffer *acquire();
 
 private:
-    GstBufferPool *pool_ = nullptr;
+    GstVideoInfo info_{};
+    std::optional<MemoryPool> pool_;
 };
 
 } // namespace dff

@@ -33,6 +33,7 @@
  */
 #include "lenssweeptag.h"
 
+#include "common/running_time.h"
 #include "sweep_tagger.h"
 
 #include <exception>
@@ -190,8 +191,7 @@ static FrameTrace trace_of(const GstBuffer *buffer)
 static std::optional<uint64_t> monotonic_time_of(GstBaseTransform *transform, const GstBuffer *buffer)
 {
     g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(transform));
-    const GstClockTime running =
-        gst_segment_to_running_time(&transform->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+    const GstClockTime running = dff::running_time(transform->segment, GST_BUFFER_PTS(buffer));
     if (!clock || !GST_CLOCK_TIME_IS_VALID(running))
         return std::nullopt;
     const GstClockTime stamped = gst_element_get_base_time(GST_ELEMENT(transform)) + running;

@@ -2,21 +2,18 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depth_matching.h"
 
+#include "common/running_time.h"
+
 namespace dff {
 
 namespace {
-
-GstClockTime running_time(GstAggregatorPad *pad, GstBuffer *buffer)
-{
-    return gst_segment_to_running_time(&pad->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
-}
 
 /* How much later than the colour picture the depth map is; 0 where either has no time. */
 GstClockTimeDiff lateness(GstAggregatorPad *color_pad, GstBuffer *color, GstAggregatorPad *depth_pad,
                           GstBuffer *depth)
 {
-    const GstClockTime color_time = running_time(color_pad, color);
-    const GstClockTime depth_time = running_time(depth_pad, depth);
+    const GstClockTime color_time = running_time(color_pad->segment, GST_BUFFER_PTS(color));
+    const GstClockTime depth_time = running_time(depth_pad->segment, GST_BUFFER_PTS(depth));
     if (!GST_CLOCK_TIME_IS_VALID(color_time) || !GST_CLOCK_TIME_IS_VALID(depth_time))
         return 0;
     return GST_CLOCK_DIFF(color_time, depth_time);

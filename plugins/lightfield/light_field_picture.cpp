@@ -162,8 +162,6 @@ GstBuffer *LightFieldPicture::compose(GstBuffer *color, GstBuffer *depth)
     }
     ensure_renderer();
     g_autoptr(GstBuffer) picture = pool_.acquire();
-    if (!picture)
-        throw std::runtime_error("There is no memory left for another picture");
     render(color, depth, picture);
     stamp_picture(picture, color, color, next_picture_++);
     return reinterpret_cast<GstBuffer *>(g_steal_pointer(&picture));

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/opencl/command_queue.h"
 
+#include "engine/engine_error.h"
+
 #include <algorithm>
 
 namespace dff {
@@ -18,6 +20,18 @@ constexpr size_t round_up(size_t value, size_t multiple)
 CommandQueue::CommandQueue(std::shared_ptr<Device> device)
     : device_(std::move(device)), queue_(device_->context(), device_->device(), CL_QUEUE_PROFILING_ENABLE)
 {
+}
+
+cl::Buffer CommandQueue::allocate(size_t bytes)
+{
+    if (bytes > device_->largest_allocation())
+        throw EngineError(EngineError::Kind::TooLarge,
+                          "The OpenCL device " + device_->name() + " takes " +
+                              std::to_string(device_->largest_allocation()) + " bytes at once, and " +
+                              std::to_string(bytes) +
+                              " are needed: use smaller pictures, fewer planes or another device");
+    allocated_ += bytes;
+    return {device_->context(), CL_MEM_READ_WRITE, bytes};
 }
 
 void CommandQueue::enqueue(const cl::Kernel &kernel, const cl::NDRange &size, std::array<size_t, 3> group)

@@ -23,11 +23,8 @@ public:
     const Device &device() const { return *device_; }
     cl::CommandQueue &commands() { return queue_; }
 
-    cl::Buffer allocate(size_t bytes)
-    {
-        allocated_ += bytes;
-        return {device_->context(), CL_MEM_READ_WRITE, bytes};
-    }
+    /* Throws EngineError (TooLarge) if the device does not take so much at once. */
+    cl::Buffer allocate(size_t bytes);
 
     /* Bytes of all buffers so far, given back or not. */
     uint64_t allocated() const { return allocated_; }

@@ -8,14 +8,20 @@
 
 namespace dff {
 
+/* Throws EngineError (TooLarge) if the device cannot take stacks of this shape: one is a single allocation,
+ * and may have half of the device's memory at most. */
+void require_room(const Device &device, const StackShape &shape);
+
 /* A focal stack as the kernels see it: its bytes, and where each component of each plane starts. On a CPU the
  * bytes are used in place, elsewhere those of the view's shared upload or of one of its own, so the view must
  * stay valid until the queue is finished. */
 class StackBuffer {
 public:
+    /* Throws as require_room(), before anything is allocated. */
     StackBuffer(CommandQueue &queue, StackShape shape);
 
-    /* Points the buffer at the stack in `view`, whose shape must be this one's. */
+    /* Points the buffer at the stack in `view`. Throws EngineError if that has another shape than this, or
+     * does not lie within its memory. */
     void assign(const StackView &view);
 
     /* Bit z is set where plane z is another than in the stack of the last remember(). */

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include <gst/dff/dff.h>
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -105,6 +106,44 @@ TEST_F(StackInfo, a_wrong_size_is_told_with_both_sizes)
         EXPECT_NE(error.find(std::to_string(size)), std::string::npos) << error;
         EXPECT_NE(error.find("2000"), std::string::npos) << error;
     }
+}
+
+TEST_F(StackInfo, tight_rows_are_named)
+{
+    const GstFocalStackInfo info =
+        parse("video/x-focal-stack,format=RGB,width=65,height=10,planes=2,framerate=1/1");
+    g_autoptr(GstBuffer) stack = gst_buffer_new_allocate(nullptr, 2 * 10 * 195, nullptr);
+    const std::string error = locate_error(info, stack, 0);
+    for (const char *word : {"tight", "195", "multiples of 4", "196", "3900", "3920"})
+        EXPECT_NE(error.find(word), std::string::npos) << error;
+}
+
+TEST_F(StackInfo, a_meta_of_other_planes_or_impossible_powers_is_not_believed)
+{
+    const GstFocalStackInfo info =
+        parse("video/x-focal-stack,format=GRAY8,width=64,height=64,planes=3,framerate=1/1");
+    const auto error_of = [&](unsigned planes, double power) {
+        g_autoptr(GstBuffer) stack = gst_buffer_new();
+        g_autoptr(GError) error = nullptr;
+        GstFocusInfo focus;
+        gst_focus_info_init(&focus);
+        focus.power = power;
+        gst_focal_stack_meta_set_focus(gst_buffer_add_focal_stack_meta(stack, 9, planes), 1, &focus);
+        const GstFocalStackMeta *meta = gst_focal_stack_info_get_meta(&info, stack, &error);
+        EXPECT_EQ(meta == nullptr, error != nullptr);
+        return std::string(error ? error->message : "");
+    };
+    EXPECT_EQ(error_of(3, 2.0), "");
+    EXPECT_EQ(error_of(3, NAN), "") << "unknown";
+    EXPECT_NE(error_of(64, 2.0).find("64 planes, but its caps of 3"), std::string::npos);
+    EXPECT_NE(error_of(2, 2.0), "");
+    for (const double power : {HUGE_VAL, -HUGE_VAL, 1e7})
+        EXPECT_NE(error_of(3, power).find("Plane 1 of stack 9"), std::string::npos);
+
+    g_autoptr(GstBuffer) bare = gst_buffer_new();
+    g_autoptr(GError) error = nullptr;
+    EXPECT_EQ(gst_focal_stack_info_get_meta(&info, bare, &error), nullptr);
+    EXPECT_EQ(error, nullptr);
 }
 
 TEST_F(StackInfo, metas_that_reach_out_of_the_stack_are_told_with_both_sizes)

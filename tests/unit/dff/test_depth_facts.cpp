@@ -44,14 +44,26 @@ TEST(DepthFacts, a_stack_tells_its_planes_only_when_it_knows_all)
 {
     gst_init(nullptr, nullptr);
     g_autoptr(GstBuffer) stack = gst_buffer_new();
-    EXPECT_EQ(plane_positions(stack), PlanePositions());
+    g_autoptr(GstCaps) caps =
+        gst_caps_from_string("video/x-focal-stack,format=GRAY8,width=64,height=64,planes=2,framerate=1/1");
+    GstFocalStackInfo info;
+    ASSERT_TRUE(gst_focal_stack_info_from_caps(&info, caps));
+    EXPECT_EQ(plane_positions(info, stack), PlanePositions());
     GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, 0, 2);
     GstFocusInfo focus;
     gst_focus_info_init(&focus);
     focus.power = 2.0;
     gst_focal_stack_meta_set_focus(meta, 0, &focus);
-    EXPECT_TRUE(plane_positions(stack).powers.empty());
+    EXPECT_TRUE(plane_positions(info, stack).powers.empty());
     focus.power = 1.0;
     gst_focal_stack_meta_set_focus(meta, 1, &focus);
-    EXPECT_EQ(plane_positions(stack).powers, (std::vector<double>{2.0, 1.0}));
+    EXPECT_EQ(plane_positions(info, stack).powers, (std::vector<double>{2.0, 1.0}));
+    info.planes = 3;
+    EXPECT_THROW(plane_positions(info, stack), std::invalid_argument) << "the caps say otherwise";
+    info.planes = 2;
+    for (const double power : {HUGE_VAL, -HUGE_VAL, 1e300}) {
+        focus.power = power;
+        gst_focal_stack_meta_set_focus(meta, 1, &focus);
+        EXPECT_THROW(plane_positions(info, stack), std::invalid_argument) << power;
+    }
 }

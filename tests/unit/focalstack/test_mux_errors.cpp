@@ -2,7 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
+#include <array>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace {
 
@@ -130,6 +132,53 @@ TEST(MuxErrors, formats_that_make_no_stacks_do_not_link)
     gst_element_set_state(pipeline, GST_STATE_NULL);
     gst_object_unref(bus);
     gst_object_unref(pipeline);
+}
+
+TEST(MuxErrors, a_stack_larger_than_the_machine_is_told_with_bytes_before_it_is_allocated)
+{
+    if (static_cast<guint64>(sysconf(_SC_PHYS_PAGES)) * static_cast<guint64>(sysconf(_SC_PAGESIZE)) >> 35)
+        GTEST_SKIP() << "a machine of 32 GiB takes the largest stack there is";
+    const Owned<GstHarness> harness(gst_harness_new_parse("focalstackmux"));
+    GstElement *mux = gst_harness_find_element(harness.get(), "focalstackmux");
+    GstBus *bus = gst_bus_new();
+    gst_element_set_bus(mux, bus);
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("RGBx", 8192, 8192).c_str());
+    GstBuffer *frame = new_frame(video_info("RGBx", 32, 32), 0, 0, 64); /* what it holds is looked at later */
+    EXPECT_EQ(gst_harness_push(harness.get(), frame), GST_FLOW_ERROR);
+    const Owned<GstMessage> message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
+    ASSERT_TRUE(message);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_error(message.get(), &error, nullptr);
+    EXPECT_TRUE(g_error_matches(error, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_NO_SPACE_LEFT));
+    for (const char *word : {"17179869184 bytes", "64 planes of 8192x8192 RGBx", "lower planes"})
+        EXPECT_NE(std::string(error->message).find(word), std::string::npos) << error->message;
+    gst_element_set_bus(mux, nullptr);
+    gst_object_unref(bus);
+    gst_object_unref(mux);
+}
+
+TEST(MuxErrors, frames_whose_layout_lies_are_left_out)
+{
+    const GstVideoInfo info = video_info("GRAY8", 32, 16);
+    const auto lies = std::to_array<void (*)(GstVideoMeta *)>({
+        [](GstVideoMeta *meta) { meta->stride[0] = G_MAXINT; },
+        [](GstVideoMeta *meta) { meta->stride[0] = 33; },
+        [](GstVideoMeta *meta) { meta->stride[0] = -32; },
+        [](GstVideoMeta *meta) { meta->offset[0] = 1; },
+        [](GstVideoMeta *meta) { meta->offset[0] = G_MAXSIZE; },
+        [](GstVideoMeta *meta) { meta->width = 64; },
+        [](GstVideoMeta *meta) { meta->height = 8; },
+    });
+    const Owned<GstHarness> harness(gst_harness_new_parse("focalstackmux"));
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
+    for (size_t i = 0; i < lies.size(); i++) {
+        GstBuffer *frame = new_frame(info, 0, 0, 2);
+        lies[i](gst_buffer_add_video_meta(frame, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_FORMAT_GRAY8, 32, 16));
+        EXPECT_EQ(gst_harness_push(harness.get(), frame), GST_FLOW_OK);
+    }
+    GstElement *mux = gst_harness_find_element(harness.get(), "focalstackmux");
+    EXPECT_EQ(count_of(mux, "damaged"), lies.size());
+    gst_object_unref(mux);
 }
 
 TEST(MuxErrors, planes_other_than_the_frames_say_is_an_error)

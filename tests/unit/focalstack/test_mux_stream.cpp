@@ -333,6 +333,32 @@ TEST(MuxStream, a_hundred_stacks_may_wait_downstream)
     }
 }
 
+TEST(MuxStream, frames_without_times_are_timed_anew_after_a_flush)
+{
+    const GstVideoInfo info = video_info("GRAY8", 32, 16);
+    const auto harness = new_mux();
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
+    for (unsigned pass = 0; pass < 2; pass++) {
+        GstSegment bytes;
+        gst_segment_init(&bytes, GST_FORMAT_BYTES);
+        gst_harness_push_event(harness.get(), gst_event_new_segment(&bytes));
+        for (uint64_t sweep = 0; sweep < 3; sweep++)
+            for (unsigned z = 0; z < planes; z++) {
+                GstBuffer *frame = new_frame(info, sweep, z, planes);
+                GST_BUFFER_PTS(frame) = GST_BUFFER_DURATION(frame) = GST_CLOCK_TIME_NONE;
+                gst_harness_push(harness.get(), frame);
+            }
+        for (unsigned k = 0; k < 3; k++) {
+            const Owned<GstBuffer> stack(gst_harness_try_pull(harness.get()));
+            ASSERT_TRUE(stack);
+            EXPECT_EQ(GST_BUFFER_PTS(stack.get()), gst_util_uint64_scale(k, planes * GST_SECOND, 120))
+                << "pass " << pass;
+        }
+        gst_harness_push_event(harness.get(), gst_event_new_flush_start());
+        gst_harness_push_event(harness.get(), gst_event_new_flush_stop(TRUE));
+    }
+}
+
 TEST(MuxStream, a_converter_before_the_mux_is_told_what_stacks_are_wanted)
 {
     const auto harness = new_mux("focalstackmux ! capsfilter caps=video/x-focal-stack,format=NV12,width=64");

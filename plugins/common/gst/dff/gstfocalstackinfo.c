@@ -10,7 +10,7 @@
  */
 #include "gstfocalstackinfo.h"
 
-#include "gstfocalstackmeta.h"
+#include <math.h>
 
 G_DEFINE_BOXED_TYPE(GstFocalStackInfo, gst_focal_stack_info, gst_focal_stack_info_copy,
                     gst_focal_stack_info_free)
@@ -175,8 +175,38 @@ static const GstVideoMeta *find_meta(const GstFocalStackInfo *info, GstBuffer *b
     return meta;
 }
 
+/* Bytes of a stack whose rows follow each other without padding. */
+static gsize tight_size(const GstFocalStackInfo *info)
+{
+    const GstVideoInfo *frame = &info->frame;
+    gsize size = 0;
+
+    for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(frame); i++) {
+        gint component[GST_VIDEO_MAX_COMPONENTS];
+        gst_video_format_info_component(frame->finfo, i, component);
+        size +=
+            row_bytes(frame, (guint)component[0]) * (gsize)GST_VIDEO_INFO_COMP_HEIGHT(frame, component[0]);
+    }
+    return size * info->planes;
+}
+
+static gboolean tight_rows_error(const GstFocalStackInfo *info, gsize size, GError **error)
+{
+    g_set_error(
+        error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+        "The stack has %" G_GSIZE_FORMAT " bytes: its rows are tight, of %" G_GSIZE_FORMAT
+        " bytes. Rows of multiples of 4 bytes are expected, here of %d, which make %" G_GSIZE_FORMAT
+        " bytes (%u planes of %dx%d %s): pad each row, or crop the pictures to a multiple of 4 pixels",
+        size, row_bytes(&info->frame, 0), GST_VIDEO_INFO_PLANE_STRIDE(&info->frame, 0),
+        gst_focal_stack_info_get_size(info), info->planes, GST_VIDEO_INFO_WIDTH(&info->frame),
+        GST_VIDEO_INFO_HEIGHT(&info->frame), GST_VIDEO_INFO_NAME(&info->frame));
+    return FALSE;
+}
+
 static gboolean size_error(const GstFocalStackInfo *info, gsize size, gsize needed, GError **error)
 {
+    if (size == tight_size(info) && size < gst_focal_stack_info_get_size(info))
+        return tight_rows_error(info, size, error);
     g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
                 "The stack has %" G_GSIZE_FORMAT
                 " bytes, but its caps (%u planes of %dx%d %s) need %" G_GSIZE_FORMAT,
@@ -241,6 +271,54 @@ gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuf
     }
     return size == gst_focal_stack_info_get_size(info) ||
            size_error(info, size, gst_focal_stack_info_get_size(info), error);
+}
+
+/* A lens that is at most a micrometre from what it sees; a stage that goes a kilometre. */
+#define LARGEST_POWER 1e6
+#define LARGEST_POSITION_UM 1e9
+
+static gboolean is_unknown_or_within(gdouble value, gdouble largest)
+{
+    return isnan(value) || fabs(value) <= largest;
+}
+
+/**
+ * gst_focal_stack_info_get_meta:
+ * @info: the stack's caps
+ * @buffer: a stack
+ * @error: where an error goes
+ *
+ * What is known of a stack, where it can be believed: a meta that speaks of as many planes as the caps, with
+ * powers within a million dioptres and positions within a kilometre, or unknown ones.
+ *
+ * Returns: (transfer none) (nullable): the meta; %NULL without @error if @buffer has none, %NULL with @error
+ * set if it has one that cannot be
+ */
+GstFocalStackMeta *gst_focal_stack_info_get_meta(const GstFocalStackInfo *info, GstBuffer *buffer,
+                                                 GError **error)
+{
+    GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(buffer);
+
+    if (meta && meta->planes != info->planes) {
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "The meta of stack %" G_GUINT64_FORMAT " speaks of %u planes, but its caps of %u",
+                    meta->sequence, meta->planes, info->planes);
+        return NULL;
+    }
+    for (guint z = 0; meta && z < meta->planes; z++) {
+        GstFocusInfo focus;
+
+        gst_focal_stack_meta_get_focus(meta, z, &focus);
+        if (is_unknown_or_within(focus.power, LARGEST_POWER) &&
+            is_unknown_or_within(focus.position_um, LARGEST_POSITION_UM))
+            continue;
+        g_set_error(error, GST_STREAM_ERROR, GST_STREAM_ERROR_FORMAT,
+                    "Plane %u of stack %" G_GUINT64_FORMAT
+                    " cannot lie at a power of %g dioptres or a position of %g um",
+                    z, meta->sequence, focus.power, focus.position_um);
+        return NULL;
+    }
+    return meta;
 }
 
 /**

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include <gst/dff/dff-prelude.h>
+#include <gst/dff/gstfocalstackmeta.h>
 #include <gst/video/video.h>
 
 G_BEGIN_DECLS
@@ -46,6 +46,8 @@ GST_DFF_API gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info);
 GST_DFF_API gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuffer *buffer,
                                                        guint plane, gsize offset[GST_VIDEO_MAX_PLANES],
                                                        gint stride[GST_VIDEO_MAX_PLANES], GError **error);
+GST_DFF_API GstFocalStackMeta *gst_focal_stack_info_get_meta(const GstFocalStackInfo *info, GstBuffer *buffer,
+                                                             GError **error);
 GST_DFF_API void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuffer *buffer);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(GstFocalStackInfo, gst_focal_stack_info_free)
