@@ -75,6 +75,11 @@ static void put_settings(GstLensSweepSrc *self, const dff::CaptureSettings &sett
     GST_OBJECT_UNLOCK(self);
 }
 
+static void log_event(GstLensSweepSrc *self, const std::string &event)
+{
+    GST_INFO_OBJECT(self, "%s", event.c_str());
+}
+
 static void log_verdict(GstLensSweepSrc *self, const dff::CameraFrame &frame,
                         const dff::FrameVerdict &verdict)
 {
@@ -89,7 +94,7 @@ static void log_verdict(GstLensSweepSrc *self, const dff::CameraFrame &frame,
 static dff::CaptureLog capture_log(GstLensSweepSrc *self)
 {
     return {
-        [self](const std::string &event) { GST_INFO_OBJECT(self, "%s", event.c_str()); },
+        [self](const auto &event) { log_event(self, event); },
         [self](const auto &frame, const auto &verdict) { log_verdict(self, frame, verdict); },
     };
 }
@@ -132,7 +137,9 @@ static gboolean start(GstBaseSrc *source)
     try {
         put_settings(self, properties.settings());
         auto capture = std::make_shared<dff::SweepCapture>(state.settings, capture_log(self));
-        GST_INFO_OBJECT(self, "camera %s", capture->camera().title().c_str());
+        GST_INFO_OBJECT(self, "camera %s, lens %s, run-line %s, sync-line %s",
+                        capture->camera().title().c_str(), state.settings.lens.c_str(),
+                        state.settings.run_line.c_str(), state.settings.sync_line.c_str());
         state.clock_caps = capture->camera().has_ptp()
                                ? gst_caps_from_string("timestamp/x-ptp,version=IEEE1588-2008,domain=0")
                                : gst_caps_new_empty_simple("timestamp/x-camera");

@@ -50,7 +50,27 @@ static void run(GstLensSweepSrc *self)
     tell_latency(self);
 }
 
-/* False if nothing downstream takes the new frame rate. */
+/* False if nothing downstream takes it, which is an error, or if the stream ends just now. */
+static bool tell_frame_rate(GstLensSweepSrc *self, double frame_rate)
+{
+    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(GST_BASE_SRC_PAD(self));
+    caps = gst_caps_make_writable(caps);
+    gint numerator = 0;
+    gint denominator = 1;
+    gst_util_double_to_fraction(frame_rate, &numerator, &denominator);
+    gst_caps_set_simple(caps, "framerate", GST_TYPE_FRACTION, numerator, denominator, nullptr);
+    if (gst_pad_peer_query_accept_caps(GST_BASE_SRC_PAD(self), caps))
+        return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
+    GST_ELEMENT_ERROR(
+        self, STREAM, FORMAT,
+        ("Nothing downstream takes the new frame rate of %d/%d, which is planes times rate. Ask "
+         "for no frame rate there, or leave the rate as it was.",
+         numerator, denominator),
+        (nullptr));
+    return false;
+}
+
+/* False if the stream cannot go on with them. */
 static bool take_changes(GstLensSweepSrc *self)
 {
     GstLensSweepSrcState &state = *self->state;
@@ -72,13 +92,7 @@ static bool take_changes(GstLensSweepSrc *self)
     tell_latency(self);
     if (!rate_changed)
         return true;
-    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(GST_BASE_SRC_PAD(self));
-    caps = gst_caps_make_writable(caps);
-    gint numerator = 0;
-    gint denominator = 1;
-    gst_util_double_to_fraction(settings.frame_rate(), &numerator, &denominator);
-    gst_caps_set_simple(caps, "framerate", GST_TYPE_FRACTION, numerator, denominator, nullptr);
-    return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
+    return tell_frame_rate(self, settings.frame_rate());
 }
 
 /* What the pipeline's clock is ahead of CLOCK_MONOTONIC. Both are read again if this thread had to wait

@@ -285,6 +285,16 @@ TEST(LensSweepSrc, pictures_that_nobody_takes_are_an_error_that_says_so)
     }
 }
 
+TEST(LensSweepSrc, a_new_rate_that_nobody_takes_is_an_error_that_says_so)
+{
+    Pipeline pipeline(camera + "! video/x-raw,framerate=60/1 " + out);
+    pipeline.set_state(GST_STATE_PLAYING);
+    ASSERT_NE(pipeline.pull("out"), nullptr) << pipeline.wait();
+    g_object_set(pipeline.element("camera"), "rate", 20.0, nullptr);
+    const std::string error = pipeline.wait();
+    EXPECT_NE(error.find("frame rate of 80/1"), std::string::npos) << error;
+}
+
 TEST(LensSweepSrc, errors_say_what_to_do)
 {
     const auto error = [](const std::string &properties) {
