@@ -15,6 +15,7 @@ cd "$(dirname "$0")/.."
 
 verdict="FAILED, see above"
 finish() {
+    jobs -p | xargs -r kill 2>/dev/null || true # a pipeline that still runs when the demo is stopped
     rm -rf demo/frames
     echo "demo: $verdict"
 }
@@ -94,9 +95,11 @@ simulated_sweep() {
 # read_photographs: their frames to demo/frames, and what they are to width, height and planes.
 read_photographs() {
     say "Looking at the photographs in $photos, the nearest focus first:"
+    local status=0
     mkdir -p demo/frames
-    pipelines/photographs.py "$photos" demo/frames 2>demo/photographs.log ||
-        fail "$(tail -n 1 demo/photographs.log)"
+    pipelines/photographs.py "$photos" demo/frames 2>demo/photographs.log || status=$?
+    [ $status -eq 0 ] ||
+        fail "$(tail -n 1 demo/photographs.log | grep . || echo "pipelines/photographs.py ended with status $status")"
     read -r width height < <(sed -E 's/.*width=([0-9]+),height=([0-9]+).*/\1 \2/' demo/frames/caps)
     planes=$(find demo/frames -name '[0-9][0-9]' | wc -l)
 }
