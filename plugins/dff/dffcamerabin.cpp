@@ -179,7 +179,7 @@ static void build_graph(GstDffCameraBin *self)
     GstElement *stack_queue = add_queue(self), *aif_stack_queue = add_queue(self),
                *aif_depth_queue = add_queue(self), *depth_queue = add_queue(self),
                *aif_queue = add_queue(self);
-    state.planes = add_tee(self, "planes");
+    state.planes = add_tee(self, "plane-tee"); /* a pipeline's own elements may be called planes */
     state.mux = add(self, "focalstackmux", "mux");
     state.stacks = add_tee(self, "stacks");
     state.depth_valve = add_valve(self, "depth-valve");

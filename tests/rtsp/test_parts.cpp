@@ -65,6 +65,7 @@ TEST(SourcePipeline, outputs_are_found_by_the_names_of_elements_tees_and_pads)
     EXPECT_EQ(outputs_of(
                   "lenssweeptestsrc name=camera  camera.depth ! fakesink  camera.src ! identity name=planes"),
               Outputs{"planes"});
+    EXPECT_EQ(outputs_of("dffcamerabin"), (Outputs{"aif", "depth"})); /* and none of what is inside */
 }
 
 TEST(SourcePipeline, a_pipeline_without_outputs_is_refused)
