@@ -117,7 +117,7 @@ photographs() {
     say "Aligning $planes photographs of $size, then depth and all-in-focus"
     launch "$(graph "multifilesrc location=demo/frames/%02d stop-index=$((planes - 1)) caps=$caps,framerate=$planes/1 !
         lenssweeptag planes=$planes ! focalstackmux ! focalstackalign" sharp) $(pictures "imagefreeze num-buffers=75 !")"
-    result="1 stack of $planes photographs in $(seconds | xargs printf '%.1f') s"
+    result="1 stack of $planes photographs"
 }
 
 [ $# -le 1 ] || fail "there are $# arguments; it takes one folder, in quotes if its name has spaces"

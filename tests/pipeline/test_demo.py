@@ -211,7 +211,7 @@ class Demo(Folders):
             write(folder / f'p "{number}" %d.png', texture(number, np.uint16))
         status, lines = self.demo(folder)
         self.assertEqual(status, 0, lines)
-        self.assertRegex(lines[-1], r'^demo: OK, 1 stack of 4 photographs in \d+\.\d s, \d+ min \d+ s in all, ')
+        self.assertRegex(lines[-1], r'^demo: OK, 1 stack of 4 photographs, \d+ min \d+ s in all, ')
         picture = oiio.ImageInput.open(str(self.checkout / 'demo/all-in-focus.png')).spec()
         self.assertEqual((picture.width, picture.height, picture.nchannels, picture.format), (SIDE, SIDE, 1, oiio.TypeUInt16))
         self.assertEqual(sorted(path.name for path in (self.checkout / 'demo').iterdir()),
