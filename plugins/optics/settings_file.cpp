@@ -69,6 +69,19 @@ bool is_one_yaml_document(std::string_view text)
     return begun;
 }
 
+/* The parser reads at address 0 where a text ends inside a tag. So it begins and ends as one that is whole.
+ */
+bool is_whole_xml(std::string_view text)
+{
+    constexpr std::string_view end = "</opencv_storage>";
+    const size_t last = text.find_last_not_of(" \t\r\n");
+    const size_t comment = text.rfind("<!--"), comment_end = text.rfind("-->");
+    const bool comments_end =
+        comment == std::string_view::npos || (comment_end != std::string_view::npos && comment < comment_end);
+    return text.substr(0, text.find('\n')).find("?>") != std::string_view::npos && comments_end &&
+           text.substr(0, last + 1).ends_with(end);
+}
+
 bool is_text(std::string_view text)
 {
     const auto is_control = [](unsigned char c) {
@@ -137,6 +150,8 @@ std::string FileEntries::File::read() const
         fail("it has binary data; write numbers as text");
     if (text.starts_with("%YAML") && !is_one_yaml_document(text))
         fail("it is not a single YAML document, the names of whose entries begin at the line's beginning");
+    if (text.starts_with("<?xml") && !is_whole_xml(text))
+        fail("it is not a whole XML document, with ?> in its first line and </opencv_storage> at its end");
     if (opening_marks(text) > most_marks)
         fail("it has more than " + std::to_string(most_marks) + " entries and lists");
     return text;

@@ -100,7 +100,7 @@ TEST(SettingsFile, nesting_that_overflows_the_parser_is_refused_in_each_language
             yaml("a: " + repeated("[ #]\n", depth)),
             R"({"a": )" + repeated("[", depth),
             repeated(R"({"a": )", depth),
-            "<?xml version=\"1.0\"?>\n<opencv_storage>" + repeated("<a>", depth),
+            "<?xml version=\"1.0\"?>\n<opencv_storage>" + repeated("<a>", depth) + "</opencv_storage>",
         };
         for (const std::string &text : texts) {
             const std::string fault = fault_of_path(TextFile(text).path);
@@ -134,9 +134,8 @@ TEST(SettingsFile, what_is_no_such_file_is_told_at_once)
                   "it has other characters than those of a text");
 
     const std::string unknown = "it is neither YAML (with a first line %YAML:1.0) nor JSON nor XML";
-    for (const char *const text :
-         {"", "a: 1\n", "\x8b\x88", "%YAML:1.0\n---\na: [",
-          "%YAML:1.0\n---\na:\n   -\n      dx: 3.0\n      :\n", "{\"a\": 1", "<?xml"})
+    for (const char *const text : {"", "a: 1\n", "\x8b\x88", "%YAML:1.0\n---\na: [",
+                                   "%YAML:1.0\n---\na:\n   -\n      dx: 3.0\n      :\n", "{\"a\": 1"})
         EXPECT_EQ(fault_of_path(TextFile(text).path).substr(0, unknown.size()), unknown) << text;
     EXPECT_EQ(fault_of_path(TextFile("[ 1, 2 ]").path).substr(0, unknown.size()), unknown);
     EXPECT_EQ(fault_of_path(TextFile(std::string(2 << 20, ' ')).path), "it has more than 1 MiB");
@@ -165,6 +164,20 @@ TEST(SettingsFile, the_parser_sees_one_yaml_document_or_it_would_not_come_back)
          {"%YAML:1.0\n---\na: 1\n", "%YAML:1.0\na: 1\n", "%YAML:1.0\r\n---\r\n\r\n# a\r\n  # b\r\na: 1\r\n",
           "\xef\xbb\xbf%YAML:1.0\n---\na: 1\n", "%YAML:1.0\n--- \n\na: 1\nb:\n   - 2\n"})
         EXPECT_EQ(FileEntries("The file", TextFile(text).path).number("a", {}), 1.0) << text;
+}
+
+TEST(SettingsFile, xml_that_is_cut_is_refused)
+{
+    const std::string whole =
+        "<?xml version=\"1.0\"?>\n<opencv_storage>\n<!-- a -->\n<a>1</a>\n</opencv_storage>\n";
+    EXPECT_EQ(FileEntries("The file", TextFile(whole).path).number("a", {}), 1.0);
+    for (size_t size = 5; size < whole.size() - 1; size++)
+        EXPECT_EQ(
+            fault_of_path(TextFile(whole.substr(0, size)).path),
+            "it is not a whole XML document, with ?> in its first line and </opencv_storage> at its end")
+            << size;
+    EXPECT_NE(fault_of_path(TextFile("<?xml ve=\n</opencv_storage>").path), "");
+    EXPECT_NE(fault_of_path(TextFile("<?xml version=\"1.0\"?>\n<!-- </opencv_storage>").path), "");
 }
 
 TEST(SettingsFile, binary_data_is_refused_in_each_language)
