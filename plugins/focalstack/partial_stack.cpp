@@ -75,17 +75,27 @@ PartialStack::PartialStack(const GstFocalStackInfo &info, BufferPtr buffer)
     }
 }
 
-void PartialStack::put(unsigned plane, const PlaneFrame &frame)
+/* Not by gst_video_frame_map_id(), which does not find a plane that begins 4 GiB before the stack's end:
+ * gst_buffer_find_memory() counts the bytes behind it in 32 bits. */
+bool PartialStack::put(unsigned plane, const PlaneFrame &frame)
 {
-    GstVideoFrame target;
-    if (gst_video_frame_map_id(&target, &info_.frame, buffer_.get(), static_cast<gint>(plane),
-                               GST_MAP_WRITE)) {
+    GstMapInfo map;
+    if (!gst_buffer_map(buffer_.get(), &map, GST_MAP_WRITE))
+        return false;
+    const bool has_room = holds_all(map);
+    if (has_room) {
+        GstVideoFrame target{};
+        target.info = info_.frame;
+        for (guint i = 0; i < GST_VIDEO_INFO_N_PLANES(&info_.frame); i++)
+            target.data[i] = map.data + GST_VIDEO_INFO_SIZE(&info_.frame) * plane +
+                             GST_VIDEO_INFO_PLANE_OFFSET(&info_.frame, i);
         gst_video_frame_copy(&target, frame.picture);
-        gst_video_frame_unmap(&target);
     }
+    gst_buffer_unmap(buffer_.get(), &map);
     planes_[plane] = {frame.focus, frame.time, reference_times(frame.buffer)};
     planes_[plane].focus.plane = plane;
     planes_[plane].focus.planes = info_.planes;
+    return has_room;
 }
 
 void PartialStack::copy_picture(const PartialStack &other, unsigned from, unsigned to)

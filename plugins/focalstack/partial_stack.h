@@ -62,8 +62,8 @@ public:
     /* `buffer` comes from a pool of stacks of this shape. */
     PartialStack(const GstFocalStackInfo &info, BufferPtr buffer);
 
-    /* Copies the picture into the plane. */
-    void put(unsigned plane, const PlaneFrame &frame);
+    /* Copies the picture into the plane. False if the stack's memory cannot be written. */
+    bool put(unsigned plane, const PlaneFrame &frame);
 
     /* Copies the picture of plane `from` to plane `to`, which is said to be at `power` dioptres all the same.
      */

@@ -29,7 +29,8 @@ bool RollingStacks::add(const PlaneFrame &frame)
             return false;
         window_.emplace(info(), std::move(buffer));
     }
-    put(*window_, frame);
+    if (!put(*window_, frame))
+        return false;
     return !rolling_.full() || send_window();
 }
 

@@ -36,10 +36,12 @@ std::optional<Outcome> StackMaker::next_outcome()
     return next;
 }
 
-void StackMaker::put(PartialStack &stack, const PlaneFrame &frame)
+bool StackMaker::put(PartialStack &stack, const PlaneFrame &frame)
 {
-    stack.put(frame.focus.plane, frame);
+    if (!stack.put(frame.focus.plane, frame))
+        return false;
     powers_[frame.focus.plane] = frame.focus.power;
+    return true;
 }
 
 void StackMaker::refuse(const PlaneFrame &frame, FrameVerdict verdict)

@@ -52,7 +52,7 @@ protected:
     StackMaker(const GstFocalStackInfo &info, OnMissing on_missing, MuxStatistics &statistics);
 
     unsigned planes() const { return pool_.info().planes; }
-    void put(PartialStack &stack, const PlaneFrame &frame);
+    bool put(PartialStack &stack, const PlaneFrame &frame);
     void refuse(const PlaneFrame &frame, FrameVerdict verdict);
     void drop_stack(TimeSpan time, uint64_t missing);
     void send(PartialStack &stack, uint64_t filled);

@@ -30,7 +30,8 @@ bool SweepStacks::add(const PlaneFrame &frame)
             return false;
         open = open_.emplace(frame.focus.sweep, PartialStack(info(), std::move(buffer))).first;
     }
-    put(open->second, frame);
+    if (!put(open->second, frame))
+        return false;
     settle();
     return true;
 }
