@@ -23,6 +23,9 @@
  * has an edge whenever plane 0 is exposed. A frame is let through only if edges and frames agree on its
  * plane; the others are dropped and counted in stats. See timestamp-delay for cameras that stamp frames late.
  *
+ * Where the planes lie is said by near and far, or by powers, or by a lens that knows its powers and is moved
+ * here. Otherwise it is not known, and depth can only be in plane numbers: no distance is invented.
+ *
  * Pixels are neither copied nor touched.
  *
  * ## Example launch line
@@ -33,6 +36,7 @@
  */
 #include "lenssweeptag.h"
 
+#include "common/checked_properties.h"
 #include "common/running_time.h"
 #include "sweep_tagger.h"
 
@@ -93,7 +97,12 @@ static gboolean start(GstBaseTransform *transform)
     GST_OBJECT_UNLOCK(self);
     state.frames = 0;
     try {
+        if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
+            throw std::invalid_argument(*fault);
         state.tagger = std::make_unique<SweepTagger>(settings);
+        GST_INFO_OBJECT(self, "%u planes of %g to %g dioptres (NAN: not known), lens %s",
+                        state.tagger->planes(), state.tagger->power(0),
+                        state.tagger->power(state.tagger->planes() - 1), settings.lens.c_str());
     } catch (const std::invalid_argument &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("The properties cannot be used: %s.", error.what()),
                           (nullptr));
@@ -125,6 +134,7 @@ static std::optional<uint64_t> frame_period(const GstCaps *caps)
 static gboolean set_caps(GstBaseTransform *transform, GstCaps *caps, GstCaps *)
 {
     auto *self = GST_LENS_SWEEP_TAG(transform);
+    GST_INFO_OBJECT(self, "caps %" GST_PTR_FORMAT, caps);
     try {
         self->state->tagger->set_period(frame_period(caps));
     } catch (const std::exception &error) {

@@ -2,7 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sweep_properties.h"
 
+#include "common/checked_properties.h"
+
 #include <gst/gst.h>
+#include <stdexcept>
 
 namespace {
 
@@ -27,36 +30,51 @@ void put_numbers(GValue *array, const std::vector<gdouble> &numbers)
     }
 }
 
+/* Dioptres: what lies beyond has no lens. */
+constexpr gdouble least_power = -100.0;
+constexpr gdouble greatest_power = 1000.0;
+
 } // namespace
 
 dff::SweepPlan SweepProperties::plan() const
 {
+    for (const gdouble power : {near, far})
+        if (!(power >= least_power && power <= greatest_power))
+            throw std::invalid_argument("near and far are in dioptres, from -100 to 1000");
     return powers.empty() ? dff::SweepPlan::even(planes, near, far) : dff::SweepPlan::at(powers);
 }
 
-void install_sweep_properties(GObjectClass *klass)
+void install_sweep_properties(GObjectClass *klass, const SweepProperties &defaults)
 {
-    const SweepProperties defaults;
+    const bool unknown = !defaults.has_powers();
     g_object_class_install_property(klass, PROP_PLANES,
-                                    g_param_spec_uint("planes", "Planes", "Planes a sweep",
-                                                      dff::SweepPlan::min_planes, dff::SweepPlan::max_planes,
-                                                      defaults.planes, flags));
+                                    dff::checked_at_start(g_param_spec_uint(
+                                        "planes", "Planes", "Planes a sweep", dff::SweepPlan::min_planes,
+                                        dff::SweepPlan::max_planes, defaults.planes, flags)));
     g_object_class_install_property(
         klass, PROP_NEAR,
-        g_param_spec_double("near", "Near",
-                            "Object vergence of plane 0, the nearest, in dioptres (1 / metres)", -100.0,
-                            1000.0, defaults.near, flags));
+        dff::checked_at_start(g_param_spec_double(
+            "near", "Near",
+            unknown ? "Object vergence of plane 0, the nearest, in dioptres (1 / metres); equal to far: not "
+                      "known, unless a lens that knows its powers is moved here, from 5 to 0 then"
+                    : "Object vergence of plane 0, the nearest, in dioptres (1 / metres)",
+            least_power, greatest_power, defaults.near, flags)));
     g_object_class_install_property(
         klass, PROP_FAR,
-        g_param_spec_double("far", "Far",
-                            "Object vergence of the last plane in dioptres, less than near; 0 is infinity",
-                            -100.0, 1000.0, defaults.far, flags));
+        dff::checked_at_start(g_param_spec_double(
+            "far", "Far",
+            unknown ? "Object vergence of the last plane in dioptres, less than near; 0 is infinity; equal "
+                      "to near: "
+                      "not known"
+                    : "Object vergence of the last plane in dioptres, less than near; 0 is infinity",
+            least_power, greatest_power, defaults.far, flags)));
     g_object_class_install_property(
         klass, PROP_POWERS,
         gst_param_spec_array(
             "powers", "Powers",
             "Object vergence of each plane in dioptres, falling; replaces planes, near and far unless empty",
-            g_param_spec_double("power", "Power", "Object vergence in dioptres", -100.0, 1000.0, 0.0, flags),
+            g_param_spec_double("power", "Power", "Object vergence in dioptres", least_power, greatest_power,
+                                0.0, flags),
             flags));
 }
 

@@ -14,6 +14,9 @@ struct SweepProperties {
     gdouble far = 0.0;
     std::vector<gdouble> powers;
 
+    /* Whether the planes' powers are said: near equal to far, or neither set, says nothing. */
+    bool has_powers() const { return !powers.empty() || near != far; }
+
     /* Throws std::invalid_argument, with a message for the user, if they describe no sweep. */
     dff::SweepPlan plan() const;
 };
@@ -21,7 +24,8 @@ struct SweepProperties {
 /* Their ids; those of the element itself start at FIRST_OWN_PROPERTY. */
 enum { PROP_PLANES = 1, PROP_NEAR, PROP_FAR, PROP_POWERS, FIRST_OWN_PROPERTY };
 
-void install_sweep_properties(GObjectClass *klass);
+/* Who gives `near` and `far` as defaults that say nothing need not know where the planes lie. */
+void install_sweep_properties(GObjectClass *klass, const SweepProperties &defaults = {});
 
 /* False if the id is not one of theirs. */
 bool set_sweep_property(SweepProperties &properties, guint id, const GValue *value);

@@ -9,12 +9,18 @@
 
 namespace {
 
-/* Sweeps without a label after which mode=sync says what is wrong. */
+/* Sweeps without a label after which step and sync say what is wrong. */
 constexpr unsigned patience_sweeps = 16;
+
+/* Where nothing is said a lens that knows its powers sweeps as it does in lenssweepsrc. */
+dff::SweepPlan plan_of(const SweepProperties &sweep)
+{
+    return sweep.has_powers() ? sweep.plan() : SweepProperties{.planes = sweep.planes, .powers = {}}.plan();
+}
 
 } // namespace
 
-SweepTagger::SweepTagger(const TagSettings &settings) : settings_(settings), plan_(settings.sweep.plan())
+SweepTagger::SweepTagger(const TagSettings &settings) : settings_(settings), plan_(plan_of(settings.sweep))
 {
     auto lens = dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile});
     if (settings.mode == GST_LENS_SWEEP_TAG_MODE_STEP) {
@@ -48,6 +54,7 @@ void SweepTagger::open_sync(std::unique_ptr<dff::Lens> lens)
     std::unique_ptr<dff::SequencedLens> sequencer;
     if (dynamic_cast<dff::SequencedLens *>(lens.get()))
         sequencer.reset(dynamic_cast<dff::SequencedLens *>(lens.release()));
+    has_sequencer_ = sequencer != nullptr;
     sync_ = std::make_unique<SyncTagger>(std::move(line), std::move(sequencer), plan_);
 }
 
@@ -74,22 +81,44 @@ std::optional<PlaneLabel> SweepTagger::label(const FrameTrace &trace, std::optio
 {
     if (cycle_)
         return cycle_->label(trace);
-    if (step_)
-        return step_->label(time_ns, stop);
-    if (time_ns)
+    if (time_ns && sync_)
         *time_ns -= settings_.timestamp_delay_ns;
-    const auto label = sync_->label(time_ns);
-    unlabelled_ = label ? 0 : unlabelled_ + 1;
+    const auto label = step_ ? step_->label(time_ns, stop) : sync_->label(time_ns);
+    unlabelled_ = label || stop.stop_requested() ? 0 : unlabelled_ + 1;
+    untimed_ = time_ns ? 0 : untimed_ + 1;
     return label;
 }
 
-std::string SweepTagger::warning() const
+std::string SweepTagger::warning()
 {
     if (cycle_ && cycle_->lost_place())
-        return "Frames are missing and nothing says how many; the planes may be labelled wrongly from here "
-               "on. Use "
-               "a source that numbers its frames or gives them times.";
-    return unlabelled_ == patience_sweeps * plan_.planes() ? sync_warning() : "";
+        return tell_once(
+            Cause::LostPlace,
+            "Frames are missing and nothing says how many; the planes may be labelled wrongly from "
+            "here on. Use a source that numbers its frames or gives them times.");
+    if (unlabelled_ < patience_sweeps * plan_.planes() + settings_.settle_frames)
+        return "";
+    if (step_)
+        return tell_once(
+            Cause::NeverRests,
+            "None of the last " + std::to_string(unlabelled_) +
+                " frames was taken with the lens at rest, by their times: see whether the source "
+                "stamps its frames by the pipeline's clock and delivers them in time, and "
+                "settle-frames.");
+    if (untimed_ >= unlabelled_)
+        return tell_once(Cause::Untimed,
+                         "The frames have no times on the pipeline's clock, so the edges of the sync "
+                         "line cannot be matched to them: use a source that stamps its frames.");
+    return tell_once(sync_->edges() == 0 ? Cause::NoEdges : Cause::Misfit, sync_warning());
+}
+
+std::string SweepTagger::tell_once(Cause cause, const std::string &text)
+{
+    const unsigned bit = 1U << static_cast<unsigned>(cause);
+    if (told_ & bit)
+        return "";
+    told_ |= bit;
+    return text;
 }
 
 std::string SweepTagger::sync_warning() const
@@ -111,7 +140,9 @@ std::string SweepTagger::sync_warning() const
 
 double SweepTagger::power(unsigned plane) const
 {
-    return step_ && !step_->calibrated() ? NAN : plan_.power(plane);
+    const bool lens_knows = step_ ? step_->calibrated() : has_sequencer_;
+    const bool known = lens_knows || (settings_.sweep.has_powers() && !step_);
+    return known ? plan_.power(plane) : NAN;
 }
 
 int SweepTagger::code(unsigned plane) const

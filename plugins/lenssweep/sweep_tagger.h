@@ -31,25 +31,31 @@ public:
     std::optional<PlaneLabel> label(const FrameTrace &trace, std::optional<uint64_t> time_ns,
                                     const std::stop_token &stop);
 
-    /* What the user must be told after the last frame; mostly empty. */
-    std::string warning() const;
+    /* What the user must be told after the last frame, once for each cause; mostly empty. */
+    std::string warning();
 
     unsigned planes() const { return plan_.planes(); }
 
-    /* Vergence in dioptres; NAN if the lens is not calibrated. */
+    /* Vergence in dioptres; NAN if neither the user says it nor a lens that is moved here. */
     double power(unsigned plane) const;
 
     /* What the lens is told for a plane, or -1. */
     int code(unsigned plane) const;
 
 private:
+    enum class Cause { LostPlace, NeverRests, Untimed, NoEdges, Misfit };
+
+    std::string tell_once(Cause cause, const std::string &text);
     void open_step(std::unique_ptr<dff::Lens> lens);
     void open_sync(std::unique_ptr<dff::Lens> lens);
     std::string sync_warning() const;
 
     TagSettings settings_;
     dff::SweepPlan plan_;
-    unsigned unlabelled_ = 0; /* frames in a row */
+    bool has_sequencer_ = false;
+    unsigned unlabelled_ = 0; /* frames in a row, as is the next one */
+    unsigned untimed_ = 0;
+    unsigned told_ = 0; /* causes */
 
     /* One of them is there, by mode. */
     std::optional<FrameCycle> cycle_;

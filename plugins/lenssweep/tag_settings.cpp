@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "tag_settings.h"
 
+#include "common/checked_properties.h"
+
 #include <gst/gst.h>
 
 namespace {
@@ -49,7 +51,7 @@ GType gst_lens_sweep_tag_mode_get_type()
 void install_tag_properties(GObjectClass *klass)
 {
     const TagSettings defaults;
-    install_sweep_properties(klass);
+    install_sweep_properties(klass, defaults.sweep);
     g_object_class_install_property(klass, PROP_MODE,
                                     g_param_spec_enum("mode", "Mode", "How the plane of a frame is found",
                                                       gst_lens_sweep_tag_mode_get_type(), defaults.mode,
@@ -65,10 +67,10 @@ void install_tag_properties(GObjectClass *klass)
         defaults.lens_profile.c_str());
     g_object_class_install_property(
         klass, PROP_SETTLE_FRAMES,
-        g_param_spec_uint(
+        dff::checked_at_start(g_param_spec_uint(
             "settle-frames", "Settle frames",
             "mode=step: frames dropped after each move in addition to those known to have seen it", 0, 1000,
-            defaults.settle_frames, flags));
+            defaults.settle_frames, flags)));
     install_string(klass, PROP_SYNC_LINE, "sync-line", "Sync line",
                    "mode=sync: the GPIO line with an edge at each plane 0, by name or as gpiochip0:5",
                    defaults.sync_line.c_str());

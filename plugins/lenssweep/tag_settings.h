@@ -17,7 +17,7 @@ GType gst_lens_sweep_tag_mode_get_type();
 
 /* The properties of lenssweeptag, but for its statistics. */
 struct TagSettings {
-    SweepProperties sweep;
+    SweepProperties sweep{.near = 0.0, .far = 0.0, .powers = {}}; /* nobody invents distances */
     GstLensSweepTagMode mode = GST_LENS_SWEEP_TAG_MODE_CYCLE;
     std::string lens = "none";
     std::string lens_profile;

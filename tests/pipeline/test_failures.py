@@ -62,11 +62,9 @@ class Failures(unittest.TestCase):
                                  'could not link', 'dffdepth0')
 
     def test_property_out_of_range_is_named(self):
-        for pipeline, name in (('lenssweeptestsrc num-buffers=1 planes=1 ! fakesink', 'planes'),
-                               ('lenssweeptestsrc num-buffers=1 blur-step=-1 ! fakesink', 'blur-step'),
-                               ('videotestsrc num-buffers=1 ! lenssweeptag planes=65 ! fakesink', 'planes')):
-            _, output = launch(pipeline)
-            self.assertRegex(output, f"out of range for property '{name}'")
+        for pipeline, name in (('videotestsrc num-buffers=1 ! lenssweeptag planes=65 ! fakesink', 'planes'),
+                               ('videotestsrc num-buffers=1 ! focalstackmux planes=65 ! fakesink', 'planes')):
+            self.assert_fails_saying(pipeline, f'{name}=', 'is out of range')
 
     def test_mux_told_another_number_of_planes(self):
         self.assert_fails_saying(f'lenssweeptestsrc num-buffers=12 planes=6 ! {SMALL} ! focalstackmux planes=4 ! fakesink',

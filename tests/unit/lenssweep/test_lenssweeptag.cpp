@@ -2,8 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
+#include <atomic>
+#include <cmath>
+#include <glib/gstdio.h>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace {
 
@@ -79,6 +83,20 @@ TEST_F(Tag, frames_cycle_through_the_planes)
         EXPECT_EQ(focus.exposure, GST_CLOCK_TIME_NONE);
     }
     EXPECT_FALSE(warned());
+}
+
+TEST_F(Tag, powers_that_nobody_said_are_not_known)
+{
+    start("lenssweeptag planes=4");
+    for (guint i = 0; i < 4; i++)
+        EXPECT_TRUE(std::isnan(push(new_frame()).power));
+}
+
+TEST_F(Tag, a_sweep_to_infinity_is_known_by_its_near_end)
+{
+    start("lenssweeptag planes=4 near=3");
+    EXPECT_DOUBLE_EQ(push(new_frame()).power, 3.0);
+    EXPECT_DOUBLE_EQ(push(new_frame()).power, 2.0);
 }
 
 TEST_F(Tag, powers_can_be_given_one_by_one)
@@ -176,6 +194,18 @@ TEST(TagErrors, rising_powers_are_refused_with_what_to_do)
     EXPECT_NE(error.find("near is greater than far"), std::string::npos) << error;
 }
 
+TEST(TagErrors, values_out_of_range_are_named_with_the_range)
+{
+    for (const auto &[properties, text] :
+         {std::pair("planes=65", "planes=65 is out of range: 2 to 64"),
+          std::pair("near=5000 far=1", "near=5000 is out of range: -100 to 1000"),
+          std::pair("settle-frames=5000", "settle-frames=5000 is out of range")}) {
+        Pipeline pipeline(std::string("videotestsrc num-buffers=3 ! lenssweeptag ") + properties +
+                          " ! fakesink");
+        EXPECT_NE(pipeline.run().find(text), std::string::npos) << properties;
+    }
+}
+
 TEST(TagErrors, what_a_mode_needs_is_told)
 {
     const auto error_of = [](const std::string &properties) {
@@ -209,6 +239,27 @@ TEST_F(Tag, stats_count_what_came_in)
     EXPECT_EQ(frames, 2U);
     EXPECT_EQ(labelled, 2U);
     EXPECT_EQ(dropped, 0U);
+}
+
+TEST(TagPipelines, bytes_without_times_pass_without_a_critical)
+{
+    static std::atomic<unsigned> criticals;
+    criticals = 0;
+    const guint handler = g_log_set_handler(
+        "GStreamer", G_LOG_LEVEL_CRITICAL,
+        [](const gchar *, GLogLevelFlags, const gchar *, gpointer) { criticals++; }, nullptr);
+    g_autofree gchar *path = nullptr;
+    close(g_file_open_tmp("dff-tag-XXXXXX", &path, nullptr));
+    const std::string pixels(12 * 64 * 64, 'x');
+    ASSERT_TRUE(g_file_set_contents(path, pixels.data(), static_cast<gssize>(pixels.size()), nullptr));
+    EXPECT_EQ(Pipeline("filesrc blocksize=4096 location=" + std::string(path) +
+                       " ! video/x-raw,format=GRAY8,width=64,height=64,framerate=30/1 ! lenssweeptag "
+                       "planes=3 ! fakesink")
+                  .run(),
+              "");
+    EXPECT_EQ(criticals, 0U);
+    g_log_remove_handler("GStreamer", handler);
+    g_remove(path);
 }
 
 TEST(TagPipelines, labels_survive_conversion_and_scaling)
