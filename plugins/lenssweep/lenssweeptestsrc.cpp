@@ -9,11 +9,14 @@
  * occlusion, noise of the sensor, breathing. Each buffer is one plane with its #GstFocusMeta; plane 0 is the
  * nearest. Pictures are a function of the properties alone, `seed` included.
  *
- * A scene that stands still is rendered once and replayed without a copy, so the buffers' memory is
- * read-only. With noise, the noise of four sweeps is rendered and repeats after them.
+ * A scene that stands still is rendered once and, without noise, replayed without a copy, so the buffers'
+ * memory is read-only. Noise never repeats. A rendering that takes longer than a second posts progress
+ * messages (`render`).
  *
  * The request pad `depth` gives the true depth once a sweep: GRAY16_LE in dioptres with #GstDepthMeta, 0
- * where a depth map has no value. Put a queue behind each pad.
+ * where a depth map has no value. It is that of one instant, the middle of the sweep: (planes - 1) / 2 planes
+ * after the first one, between two planes where their number is even. There what moves is seen, and the
+ * magnification of a lens that breathes is 1. Put a queue behind each pad.
  *
  * ## Example launch lines
  * |[
@@ -26,11 +29,12 @@
  */
 #include "lenssweeptestsrc.h"
 
+#include "common/checked_properties.h"
 #include "lenssweeptestsrc_private.h"
 
-#include <exception>
 #include <gst/video/video.h>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 GST_DEBUG_CATEGORY(gst_lens_sweep_test_src_debug);
@@ -96,6 +100,8 @@ static bool start(GstLensSweepTestSrc *self)
     self->state->stop = std::stop_source();
     GST_OBJECT_UNLOCK(self);
     try {
+        if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
+            throw std::invalid_argument(*fault);
         put_stream(self, std::make_unique<TestStream>(settings));
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("The properties cannot be used: %s.", error.what()),

@@ -2,10 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lenssweeptestsrc_private.h"
 
+#include "common/checked_properties.h"
 #include "stream_pad.h"
 
-#include <exception>
+#include <functional>
 #include <gst/video/video.h>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
 {
@@ -34,6 +38,7 @@ static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
     g_autoptr(GstCaps) complete = gst_video_info_to_caps(&info);
     if (!change_caps(self->src_pad, complete))
         return GST_PAD_IS_FLUSHING(self->src_pad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
+    GST_INFO_OBJECT(self, "pictures are %" GST_PTR_FORMAT, complete);
     stream.set_format(info);
     return GST_FLOW_OK;
 }
@@ -47,12 +52,55 @@ static std::stop_token rendering_token(GstLensSweepTestSrc *self)
     return token;
 }
 
+namespace {
+
+/* Tells the application what it waits for: nothing in the first second, then once a second at most. */
+class RenderProgress {
+public:
+    explicit RenderProgress(GstElement *element) : element_(element) {}
+    RenderProgress(const RenderProgress &) = delete;
+    RenderProgress &operator=(const RenderProgress &) = delete;
+
+    ~RenderProgress()
+    {
+        if (told_)
+            post(GST_PROGRESS_TYPE_COMPLETE, "The sweep is rendered");
+    }
+
+    void operator()(unsigned plane, unsigned planes)
+    {
+        const GstClockTime now = gst_util_get_timestamp();
+        if (now < told_at_ + GST_SECOND || plane + 1 == planes)
+            return;
+        told_at_ = now;
+        const std::string text = "Rendering plane " + std::to_string(plane + 2) + " of " +
+                                 std::to_string(planes) + " of the sweep";
+        post(std::exchange(told_, true) ? GST_PROGRESS_TYPE_CONTINUE : GST_PROGRESS_TYPE_START, text.c_str());
+    }
+
+private:
+    void post(GstProgressType type, const char *text)
+    {
+        gst_element_post_message(element_,
+                                 gst_message_new_progress(GST_OBJECT(element_), type, "render", text));
+    }
+
+    GstElement *element_;
+    GstClockTime told_at_ = gst_util_get_timestamp();
+    bool told_ = false;
+};
+
+} // namespace
+
 static GstFlowReturn render(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     const GstClockTime begin = gst_util_get_timestamp();
     try {
-        stream.render(rendering_token(self));
+        if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
+            throw std::invalid_argument(*fault);
+        RenderProgress progress(GST_ELEMENT(self));
+        stream.render(rendering_token(self), std::ref(progress));
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("The scene cannot be rendered: %s.", error.what()),
                           (nullptr));
@@ -136,6 +184,8 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
         return flow;
 
     g_autoptr(GstBuffer) buffer = stream.frame();
+    GST_LOG_OBJECT(self, "frame %" G_GUINT64_FORMAT " of %" GST_TIME_FORMAT, GST_BUFFER_OFFSET(buffer),
+                   GST_TIME_ARGS(GST_BUFFER_PTS(buffer)));
     /* The picture leaves the camera at the end of its exposure. */
     const GstClockTime end = GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer);
     if (stream.is_live() && !pacer.wait_until(GST_ELEMENT(self), end))

@@ -5,20 +5,23 @@
 #include "engine/scene/swept_camera.h"
 #include "picture_converter.h"
 
+#include <functional>
 #include <gst/video/video.h>
 #include <memory>
 #include <stop_token>
 #include <vector>
 
 /* The simulated camera's pictures as buffers of one video format. What does not change from sweep to sweep is
- * rendered once, in the constructor, and its memory is shared by all buffers that show it. */
+ * rendered once, in the constructor, and its memory is shared by all buffers that show it; noise is drawn
+ * anew for each frame. */
 class SimulatedSweep {
 public:
-    /* Different noise is shown in this many sweeps, which then repeat. */
-    static constexpr unsigned noise_realisations = 4;
+    /* Told of each plane that is rendered. */
+    using Progress = std::function<void(unsigned plane, unsigned planes)>;
 
     /* Where `stop` was requested nothing is usable. */
-    SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, const std::stop_token &stop);
+    SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, const std::stop_token &stop,
+                   const Progress &progress);
 
     /* The picture of one plane, without time or metas; its memory is read-only. */
     GstBuffer *frame(guint64 sweep, guint plane) const;
@@ -32,16 +35,14 @@ private:
     };
     using Buffer = std::unique_ptr<GstBuffer, BufferUnref>;
 
-    size_t index(guint64 sweep, guint plane) const;
-    GstBuffer *moving_frame(guint64 sweep, guint plane) const;
+    GstBuffer *new_frame(guint64 sweep, guint plane) const;
     GstBuffer *make_depth(guint64 sweep) const;
 
     dff::SweptCamera camera_;
     PictureConverter converter_;
     GstVideoInfo depth_info_;
-    /* Plane after plane of one realisation of the noise after the other: buffers if nothing moves, else the
-     * pictures that each frame begins with. */
+    /* Plane after plane: buffers if every sweep is the same, else what each frame begins with. */
     std::vector<Buffer> frames_;
-    std::vector<cv::Mat3b> backgrounds_;
+    std::vector<cv::Mat3f> exposed_;
     Buffer depth_; /* if nothing moves */
 };

@@ -6,9 +6,14 @@
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/scene_slant.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace {
+
+/* The blur between planes takes the time to render, and the depth does not become better by more of it. */
+constexpr gdouble blur_of_all = 10.0;
+constexpr gdouble most_blur_a_plane = 2.0;
 
 dff::SensorNoise parse_noise(const std::string &text)
 {
@@ -37,6 +42,8 @@ GType gst_lens_sweep_test_scene_get_type()
 void TestScene::check() const
 {
     parse_noise(noise);
+    if (blur_step < 0.0 && blur_step != blur_of_sweep)
+        throw std::invalid_argument("blur-step is 0 to 100 pixels, or -1");
     if (scene == GST_LENS_SWEEP_TEST_SCENE_FILES && (image.empty() || depth_map.empty()))
         throw std::invalid_argument(
             "scene=files needs the properties image and depth-map: the paths of a sharp "
@@ -66,7 +73,9 @@ dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
                                    const std::stop_token &stop) const
 {
     check();
-    const dff::SweptCameraSettings settings{plan,   blur_step, parse_noise(noise), motion, breathing,
-                                            jitter, seed};
+    const gdouble step = blur_step == blur_of_sweep
+                             ? std::min(most_blur_a_plane, blur_of_all / (plan.planes() - 1.0))
+                             : blur_step;
+    const dff::SweptCameraSettings settings{plan, step, parse_noise(noise), motion, breathing, jitter, seed};
     return {make(size, stop), settings, stop};
 }

@@ -18,12 +18,15 @@ enum GstLensSweepTestScene {
 #define GST_TYPE_LENS_SWEEP_TEST_SCENE (gst_lens_sweep_test_scene_get_type())
 GType gst_lens_sweep_test_scene_get_type();
 
+/* A blur-step by which the whole sweep has 10 pixels, but no plane more than 2. */
+constexpr gdouble blur_of_sweep = -1.0;
+
 /* What stands before the simulated camera, and how it sees it: the properties of the same names. */
 struct TestScene {
     GstLensSweepTestScene scene = GST_LENS_SWEEP_TEST_SCENE_SHAPES;
     std::string image;
     std::string depth_map;
-    gdouble blur_step = 2.0;
+    gdouble blur_step = blur_of_sweep; /* pixels from plane to plane */
     std::string noise = "none";
     gdouble motion = 0.0;
     gdouble breathing = 0.0;

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_settings.h"
 
+#include "common/checked_properties.h"
+
 #include <gst/gst.h>
 
 namespace {
@@ -147,8 +149,9 @@ void install_test_properties(GObjectClass *klass)
     const auto install = [klass](guint id, GParamSpec *spec) {
         g_object_class_install_property(klass, id, spec);
     };
-    install(PROP_RATE,
-            g_param_spec_double("rate", "Rate", "Sweeps per second", 0.01, 1000.0, defaults.rate, ready));
+    const auto install_range = [&](guint id, GParamSpec *spec) { install(id, dff::checked_at_start(spec)); };
+    install_range(PROP_RATE, g_param_spec_double("rate", "Rate", "Sweeps per second", 0.01, 1000.0,
+                                                 defaults.rate, ready));
     install(PROP_SCENE, g_param_spec_enum("scene", "Scene", "What stands before the camera",
                                           GST_TYPE_LENS_SWEEP_TEST_SCENE, defaults.scene.scene, playing));
     install(PROP_IMAGE,
@@ -159,36 +162,40 @@ void install_test_properties(GObjectClass *klass)
                                 "image's size, larger is nearer, 0 is unknown; the 0.2 and 99.8 percentiles "
                                 "become the ends of the sweep",
                                 "", playing));
-    install(PROP_BLUR_STEP,
-            g_param_spec_double("blur-step", "Blur step",
-                                "Change of the circle of confusion's diameter from plane to plane, in pixels",
-                                0.0, 100.0, defaults.scene.blur_step, playing));
+    install_range(PROP_BLUR_STEP,
+                  g_param_spec_double(
+                      "blur-step", "Blur step",
+                      "Change of the circle of confusion's diameter from plane to plane, in pixels; -1: "
+                      "10 pixels over the sweep, but 2 a plane at most",
+                      -1.0, 100.0, defaults.scene.blur_step, playing));
     install(PROP_NOISE,
             g_param_spec_string("noise", "Noise",
                                 "Noise of the sensor: none, mild (0.05,1), moderate (0.2,2), strong (1,5) or "
                                 "GAIN,READ for the variance GAIN * value + READ^2 of 8-bit values",
                                 defaults.scene.noise.c_str(), playing));
-    install(PROP_MOTION, g_param_spec_double(
-                             "motion", "Motion",
-                             "Pixels that a ball, which flies from side to side before the scene, moves from "
-                             "plane to plane (negative: begins on the right); 0: there is no ball",
-                             -1000.0, 1000.0, defaults.scene.motion, playing));
-    install(
+    install_range(
+        PROP_MOTION,
+        g_param_spec_double("motion", "Motion",
+                            "Pixels that a ball, which flies from side to side before the scene, moves from "
+                            "plane to plane (negative: begins on the right); 0: there is no ball",
+                            -1000.0, 1000.0, defaults.scene.motion, playing));
+    install_range(
         PROP_BREATHING,
         g_param_spec_double(
             "breathing", "Breathing",
-            "Magnification of the last plane less that of the first, about the picture's centre; the true "
-            "depth is as the middle plane, planes / 2, has it",
+            "Magnification of the last plane less that of the first, about the picture's centre; 1 in the "
+            "middle of the sweep, at (planes - 1) / 2, as the true depth has it",
             -0.5, 0.5, defaults.scene.breathing, playing));
-    install(PROP_JITTER,
-            g_param_spec_double("jitter", "Jitter",
-                                "Root mean square of each plane's shift along x and y, in pixels", 0.0, 100.0,
-                                defaults.scene.jitter, playing));
+    install_range(PROP_JITTER,
+                  g_param_spec_double("jitter", "Jitter",
+                                      "Root mean square of each plane's shift along x and y, in pixels", 0.0,
+                                      100.0, defaults.scene.jitter, playing));
     install(PROP_SEED, g_param_spec_uint64("seed", "Seed", "Of textures, noise and jitter", 0, G_MAXUINT64,
                                            defaults.scene.seed, playing));
     install(PROP_IS_LIVE, g_param_spec_boolean("is-live", "Is live", "Send each frame when its exposure ends",
                                                defaults.is_live, ready));
-    install(PROP_NUM_BUFFERS, g_param_spec_int("num-buffers", "Number of buffers",
-                                               "Frames to send before the end of the stream; -1 is no end",
-                                               -1, G_MAXINT, defaults.num_buffers, ready));
+    install_range(PROP_NUM_BUFFERS,
+                  g_param_spec_int("num-buffers", "Number of buffers",
+                                   "Frames to send before the end of the stream; -1 is no end", -1, G_MAXINT,
+                                   defaults.num_buffers, ready));
 }

@@ -104,10 +104,11 @@ void TestStream::set_scene(const TestScene &scene)
     pictures_.reset();
 }
 
-void TestStream::render(const std::stop_token &stop)
+void TestStream::render(const std::stop_token &stop, const SimulatedSweep::Progress &progress)
 {
     const cv::Size size(GST_VIDEO_INFO_WIDTH(&info_), GST_VIDEO_INFO_HEIGHT(&info_));
-    auto pictures = std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop), info_, stop);
+    auto pictures =
+        std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop), info_, stop, progress);
     if (!stop.stop_requested())
         pictures_ = std::move(pictures);
 }

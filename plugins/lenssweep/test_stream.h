@@ -36,7 +36,7 @@ public:
 
     /* Renders what repeats. Throws if a file cannot be read or memory runs out; does nothing lasting if
      * `stop` was requested. */
-    void render(const std::stop_token &stop);
+    void render(const std::stop_token &stop, const SimulatedSweep::Progress &progress);
 
     /* The next frame will be taken at `time` if that is later than it would have been. */
     void postpone(GstClockTime time);

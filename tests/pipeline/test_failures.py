@@ -62,7 +62,9 @@ class Failures(unittest.TestCase):
                                  'could not link', 'dffdepth0')
 
     def test_property_out_of_range_is_named(self):
-        for pipeline, name in (('videotestsrc num-buffers=1 ! lenssweeptag planes=65 ! fakesink', 'planes'),
+        for pipeline, name in (('lenssweeptestsrc num-buffers=1 planes=1 ! fakesink', 'planes'),
+                               ('lenssweeptestsrc num-buffers=1 blur-step=-2 ! fakesink', 'blur-step'),
+                               ('videotestsrc num-buffers=1 ! lenssweeptag planes=65 ! fakesink', 'planes'),
                                ('videotestsrc num-buffers=1 ! focalstackmux planes=65 ! fakesink', 'planes')):
             self.assert_fails_saying(pipeline, f'{name}=', 'is out of range')
 

@@ -30,16 +30,30 @@ std::optional<double> parse_number(std::string_view text)
     return number;
 }
 
+/* Normal deviates, drawn once: to draw them for each frame would take longer than a frame lasts. */
+const cv::Mat1f &deviates()
+{
+    static const cv::Mat1f table = [] {
+        cv::Mat1f normal(1, 1 << 20);
+        cv::RNG(1).fill(normal, cv::RNG::NORMAL, 0.0, 1.0);
+        return normal;
+    }();
+    return table;
+}
+
+/* A row takes its deviates from anywhere in the table, or their negatives: of two frames' rows one in two
+ * million has the same. */
 void add_noise(cv::Mat1f values, const SensorNoise &noise, uint64_t seed)
 {
-    cv::Mat1f normal(values.size());
-    cv::RNG(seed).fill(normal, cv::RNG::NORMAL, 0.0, 1.0);
-    const auto gain = static_cast<float>(noise.gain);
-    const auto read_variance = static_cast<float>(noise.read * noise.read);
-    float *value = values.ptr<float>();
-    const float *draw = normal.ptr<float>();
-    for (int i = 0; i < values.cols; i++)
-        value[i] += draw[i] * std::sqrt(gain * std::max(value[i], 0.0F) + read_variance);
+    const auto last = static_cast<uint64_t>(deviates().cols - values.cols);
+    const int from = static_cast<int>((seed >> 1) % last);
+    cv::Mat1f deviation;
+    cv::max(values, 0.0, deviation);
+    deviation.convertTo(deviation, CV_32F, noise.gain, noise.read * noise.read);
+    cv::sqrt(deviation, deviation);
+    cv::multiply(deviation, deviates().colRange(from, from + values.cols), deviation,
+                 seed % 2 == 0 ? 1.0 : -1.0);
+    values += deviation;
 }
 
 } // namespace

@@ -40,9 +40,7 @@ PlaneView SweptCamera::view(unsigned plane) const
     /* Planes need not be even in dioptres; the renderer's plane positions are. */
     const double last = plan().planes() - 1.0;
     const double focus = (plan().near() - plan().power(plane)) / (plan().near() - plan().far()) * last;
-    const unsigned middle = plan().planes() / 2;
-    const double beyond_middle = static_cast<double>(plane) - middle;
-    const double magnification = 1.0 + settings_.breathing * beyond_middle / last;
+    const double magnification = 1.0 + settings_.breathing * (plane - middle_of_sweep()) / last;
     cv::RNG random(mix_seed(mix_seed(settings_.seed, jitter_seed), plane));
     const double x = (size().width - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);
     const double y = (size().height - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);
@@ -82,7 +80,7 @@ cv::Mat1w SweptCamera::depth_map(uint64_t sweep) const
     if (!has_motion())
         return map;
     const MovingBall &ball = overlay_->ball();
-    const cv::Point2d center = ball.center(time(sweep, (plan().planes() - 1) / 2.0));
+    const cv::Point2d center = ball.center(time(sweep, middle_of_sweep()));
     cv::Mat1b covered(size(), uchar{0});
     cv::circle(covered, center, cvRound(ball.radius()), 255, cv::FILLED);
     covered.setTo(0, scene_.depth < MovingBall::depth);

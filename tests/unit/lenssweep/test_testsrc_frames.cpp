@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 namespace {
 
@@ -171,13 +172,31 @@ TEST(TestSrcFrames, writing_into_one_does_not_change_the_next)
     EXPECT_NE(bytes_of(drawn[0].get()), bytes_of(plain[0].get()));
 }
 
-TEST(TestSrcFrames, noise_repeats_after_four_sweeps_only)
+TEST(TestSrcFrames, noise_never_repeats)
 {
-    const auto samples = frames_of("planes=2 num-buffers=10 noise=moderate");
-    ASSERT_EQ(samples.size(), 10U);
-    for (size_t sweep = 1; sweep < 4; sweep++)
-        EXPECT_NE(bytes_of(samples[0].get()), bytes_of(samples[2 * sweep].get()));
-    EXPECT_EQ(bytes_of(samples[0].get()), bytes_of(samples[8].get()));
+    for (const std::string scene : {"", "motion=3 "}) {
+        const auto samples = frames_of(scene + "planes=2 num-buffers=24 noise=moderate");
+        ASSERT_EQ(samples.size(), 24U);
+        for (guint i = 0; i < 24; i += 2)
+            for (guint k = i + 2; k < 24; k += 2)
+                EXPECT_NE(bytes_of(samples[i].get()), bytes_of(samples[k].get())) << i << " and " << k;
+    }
+}
+
+TEST(TestSrcFrames, many_planes_are_blurred_no_more_than_a_few)
+{
+    const auto blur_of_first = [](const std::string &properties) {
+        const auto samples = frames_of("scene=slant num-buffers=1 " + properties,
+                                       "video/x-raw,format=GRAY8,width=128,height=96");
+        const std::vector<uint8_t> bytes = bytes_of(samples[0].get());
+        const cv::Mat1b picture(96, 128, const_cast<uint8_t *>(bytes.data()));
+        cv::Mat edges;
+        cv::Laplacian(picture, edges, CV_32F);
+        return cv::norm(edges);
+    };
+    EXPECT_EQ(blur_of_first("planes=6"), blur_of_first("planes=6 blur-step=2"));
+    EXPECT_EQ(blur_of_first("planes=4"), blur_of_first("planes=4 blur-step=2"));
+    EXPECT_NEAR(blur_of_first("planes=41") / blur_of_first("planes=41 blur-step=0.25"), 1.0, 1e-6);
 }
 
 TEST(TestSrcFrames, repeat_for_a_seed)

@@ -296,6 +296,48 @@ TEST(TestSrcErrors, say_what_to_do)
     EXPECT_EQ(error_of(""), "");
 }
 
+TEST(TestSrcErrors, values_out_of_range_are_named_with_the_range)
+{
+    EXPECT_NE(error_of("planes=100").find("planes=100 is out of range: 2 to 64"), std::string::npos);
+    EXPECT_NE(error_of("planes=1").find("planes=1 is out of range"), std::string::npos);
+    EXPECT_NE(error_of("rate=0").find("rate=0 is out of range: 0.01 to 1000"), std::string::npos);
+    EXPECT_NE(error_of("blur-step=200").find("blur-step=200 is out of range"), std::string::npos);
+    EXPECT_NE(error_of("blur-step=-0.5").find("blur-step is 0 to 100 pixels, or -1"), std::string::npos);
+    EXPECT_NE(error_of("breathing=0.7").find("breathing=0.7 is out of range: -0.5 to 0.5"),
+              std::string::npos);
+    EXPECT_NE(error_of("near=2000").find("near=2000 is out of range"), std::string::npos);
+}
+
+TEST(TestSrcErrors, a_long_rendering_tells_how_far_it_is)
+{
+    Pipeline pipeline(
+        "lenssweeptestsrc num-buffers=1 planes=16 blur-step=3 ! video/x-raw,width=320,height=240 ! "
+        "fakesink");
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline.get());
+    pipeline.set_state(GST_STATE_PLAYING);
+    bool told = false;
+    bool over = false;
+    GstMessageType type = GST_MESSAGE_UNKNOWN;
+    while (type != GST_MESSAGE_EOS) {
+        g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
+            bus, patience,
+            static_cast<GstMessageType>(GST_MESSAGE_PROGRESS | GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+        ASSERT_NE(message, nullptr);
+        type = GST_MESSAGE_TYPE(message);
+        ASSERT_NE(type, GST_MESSAGE_ERROR);
+        if (type != GST_MESSAGE_PROGRESS)
+            continue;
+        GstProgressType progress = GST_PROGRESS_TYPE_ERROR;
+        g_autofree gchar *code = nullptr;
+        g_autofree gchar *text = nullptr;
+        gst_message_parse_progress(message, &progress, &code, &text);
+        EXPECT_STREQ(code, "render");
+        told |= progress == GST_PROGRESS_TYPE_START && std::string(text).find(" of 16") != std::string::npos;
+        over |= progress == GST_PROGRESS_TYPE_COMPLETE;
+    }
+    EXPECT_TRUE(told && over);
+}
+
 TEST(TestSrcErrors, a_bad_change_while_playing_is_an_error)
 {
     Pipeline pipeline("lenssweeptestsrc name=rig" + small + "fakesink");
