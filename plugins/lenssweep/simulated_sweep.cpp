@@ -4,14 +4,14 @@
 
 #include <utility>
 
-SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, const std::stop_token &stop,
-                               const Progress &progress)
+SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, bool steady_light,
+                               const std::stop_token &stop, const Progress &progress)
     : camera_(std::move(camera)), converter_(info)
 {
     gst_video_info_set_format(&depth_info_, GST_VIDEO_FORMAT_GRAY16_LE, GST_VIDEO_INFO_WIDTH(&info),
                               GST_VIDEO_INFO_HEIGHT(&info));
     const unsigned planes = camera_.plan().planes();
-    const bool repeats = !camera_.has_motion() && !camera_.noisy();
+    const bool repeats = steady_light && !camera_.has_motion() && !camera_.noisy();
     for (unsigned plane = 0; plane < planes && !stop.stop_requested(); plane++) {
         cv::Mat3f exposed = camera_.expose(plane, stop);
         if (repeats)
@@ -24,7 +24,7 @@ SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info
         depth_.reset(make_depth(0));
 }
 
-GstBuffer *SimulatedSweep::new_frame(guint64 sweep, guint plane) const
+GstBuffer *SimulatedSweep::new_frame(guint64 sweep, guint plane, double gain) const
 {
     cv::Mat3f exposed = exposed_[plane];
     if (camera_.has_motion()) {
@@ -32,7 +32,8 @@ GstBuffer *SimulatedSweep::new_frame(guint64 sweep, guint plane) const
         const dff::PicturePatch patch = camera_.expose_motion(sweep, plane);
         patch.values.copyTo(exposed(patch.where));
     }
-    return converter_.convert(camera_.digitise(exposed, plane, sweep));
+    const cv::Mat3f lit = gain == 1.0 ? exposed : cv::Mat3f(exposed * gain);
+    return converter_.convert(camera_.digitise(lit, plane, sweep));
 }
 
 GstBuffer *SimulatedSweep::make_depth(guint64 sweep) const
@@ -40,9 +41,9 @@ GstBuffer *SimulatedSweep::make_depth(guint64 sweep) const
     return copy_to_buffer(camera_.depth_map(sweep), depth_info_);
 }
 
-GstBuffer *SimulatedSweep::frame(guint64 sweep, guint plane) const
+GstBuffer *SimulatedSweep::frame(guint64 sweep, guint plane, double gain) const
 {
-    return frames_.empty() ? new_frame(sweep, plane) : gst_buffer_copy(frames_[plane].get());
+    return frames_.empty() ? new_frame(sweep, plane, gain) : gst_buffer_copy(frames_[plane].get());
 }
 
 GstBuffer *SimulatedSweep::depth(guint64 sweep) const

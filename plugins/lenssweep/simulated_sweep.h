@@ -19,12 +19,13 @@ public:
     /* Told of each plane that is rendered. */
     using Progress = std::function<void(unsigned plane, unsigned planes)>;
 
-    /* Where `stop` was requested nothing is usable. */
-    SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, const std::stop_token &stop,
-                   const Progress &progress);
+    /* `steady_light`: frames are asked for with a gain of 1 only. Where `stop` was requested nothing is
+     * usable. */
+    SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, bool steady_light,
+                   const std::stop_token &stop, const Progress &progress);
 
-    /* The picture of one plane, without time or metas; its memory is read-only. */
-    GstBuffer *frame(guint64 sweep, guint plane) const;
+    /* The picture of one plane in `gain` times the light, without time or metas; its memory is read-only. */
+    GstBuffer *frame(guint64 sweep, guint plane, double gain) const;
 
     /* The true depth, GRAY16_LE. */
     GstBuffer *depth(guint64 sweep) const;
@@ -35,7 +36,7 @@ private:
     };
     using Buffer = std::unique_ptr<GstBuffer, BufferUnref>;
 
-    GstBuffer *new_frame(guint64 sweep, guint plane) const;
+    GstBuffer *new_frame(guint64 sweep, guint plane, double gain) const;
     GstBuffer *make_depth(guint64 sweep) const;
 
     dff::SweptCamera camera_;

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/scene/scene_light.h"
 #include "engine/scene/swept_camera.h"
 
 #include <glib-object.h>
@@ -31,7 +32,11 @@ struct TestScene {
     gdouble motion = 0.0;
     gdouble breathing = 0.0;
     gdouble jitter = 0.0;
+    gdouble flicker = 0.0;
+    guint light_switch = 0;
     guint64 seed = 0;
+
+    dff::SceneLight light() const { return {.flicker = flicker, .switch_frames = light_switch}; }
 
     bool operator==(const TestScene &) const = default;
 

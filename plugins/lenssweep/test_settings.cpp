@@ -19,6 +19,8 @@ enum {
     PROP_BREATHING,
     PROP_JITTER,
     PROP_SEED,
+    PROP_FLICKER,
+    PROP_LIGHT_SWITCH,
     PROP_IS_LIVE,
     PROP_NUM_BUFFERS,
 };
@@ -60,6 +62,12 @@ bool set_scene_property(TestScene &scene, guint id, const GValue *value)
     case PROP_SEED:
         scene.seed = g_value_get_uint64(value);
         return true;
+    case PROP_FLICKER:
+        scene.flicker = g_value_get_double(value);
+        return true;
+    case PROP_LIGHT_SWITCH:
+        scene.light_switch = g_value_get_uint(value);
+        return true;
     default:
         return false;
     }
@@ -94,6 +102,12 @@ bool get_scene_property(const TestScene &scene, guint id, GValue *value)
         return true;
     case PROP_SEED:
         g_value_set_uint64(value, scene.seed);
+        return true;
+    case PROP_FLICKER:
+        g_value_set_double(value, scene.flicker);
+        return true;
+    case PROP_LIGHT_SWITCH:
+        g_value_set_uint(value, scene.light_switch);
         return true;
     default:
         return false;
@@ -190,6 +204,18 @@ void install_test_properties(GObjectClass *klass)
                   g_param_spec_double("jitter", "Jitter",
                                       "Root mean square of each plane's shift along x and y, in pixels", 0.0,
                                       100.0, defaults.scene.jitter, playing));
+    install_range(
+        PROP_FLICKER,
+        g_param_spec_double("flicker", "Flicker",
+                            "Amplitude of the light's flicker over its mean, at 100 Hz as lamps have it "
+                            "on mains of 50 Hz; each frame has the mean over its exposure",
+                            0.0, 1.0, defaults.scene.flicker, playing));
+    install_range(
+        PROP_LIGHT_SWITCH,
+        g_param_spec_uint("light-switch", "Light switch",
+                          "Frames after which the light is dimmed to half, and after as many again to "
+                          "full; 0: it is not switched",
+                          0, G_MAXUINT, defaults.scene.light_switch, playing));
     install(PROP_SEED, g_param_spec_uint64("seed", "Seed", "Of textures, noise and jitter", 0, G_MAXUINT64,
                                            defaults.scene.seed, playing));
     install(PROP_IS_LIVE, g_param_spec_boolean("is-live", "Is live", "Send each frame when its exposure ends",

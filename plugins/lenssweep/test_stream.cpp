@@ -107,8 +107,8 @@ void TestStream::set_scene(const TestScene &scene)
 void TestStream::render(const std::stop_token &stop, const SimulatedSweep::Progress &progress)
 {
     const cv::Size size(GST_VIDEO_INFO_WIDTH(&info_), GST_VIDEO_INFO_HEIGHT(&info_));
-    auto pictures =
-        std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop), info_, stop, progress);
+    auto pictures = std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop), info_,
+                                                     settings_.scene.light().steady(), stop, progress);
     if (!stop.stop_requested())
         pictures_ = std::move(pictures);
 }
@@ -123,7 +123,11 @@ void TestStream::postpone(GstClockTime time)
 
 GstBuffer *TestStream::frame() const
 {
-    GstBuffer *buffer = pictures_->frame(sweep(), plane());
+    const GstClockTime exposure = exposure_within(frame_duration());
+    const double gain =
+        settings_.scene.light().gain(frame_, static_cast<double>(time_of(frame_)) / GST_SECOND,
+                                     static_cast<double>(exposure) / GST_SECOND);
+    GstBuffer *buffer = pictures_->frame(sweep(), plane(), gain);
     GST_BUFFER_PTS(buffer) = time_of(frame_);
     GST_BUFFER_DURATION(buffer) = time_of(frame_ + 1) - time_of(frame_);
     GST_BUFFER_OFFSET(buffer) = frame_;
@@ -137,7 +141,7 @@ GstBuffer *TestStream::frame() const
     focus.plane = plane();
     focus.planes = plan_.planes();
     focus.power = plan_.power(plane());
-    focus.exposure = exposure_within(frame_duration());
+    focus.exposure = exposure;
     focus.frame_id = frame_;
     gst_buffer_add_focus_meta(buffer, &focus);
     return buffer;
