@@ -47,11 +47,10 @@ std::vector<PlaneAlignment> AlignmentCalibration::alignments(cv::Size size, unsi
                                  std::to_string(warps_.size()) + " planes and the stack has " +
                                  std::to_string(planes));
     std::vector<PlaneAlignment> result;
-    for (PlaneWarp warp : warps_) {
-        warp.dx *= static_cast<double>(size.width) / size_.width;
-        warp.dy *= static_cast<double>(size.height) / size_.height;
-        result.push_back({warp, true});
-    }
+    const double x = static_cast<double>(size.width) / size_.width;
+    const double y = static_cast<double>(size.height) / size_.height;
+    for (const PlaneWarp &warp : warps_)
+        result.push_back({warp.in_picture_larger_by(x, y), true});
     return result;
 }
 

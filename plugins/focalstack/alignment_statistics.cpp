@@ -8,13 +8,32 @@
 namespace dff {
 namespace {
 
+/* Row by row. */
+void append_matrix(GstStructure *structure, const PlaneWarp &warp)
+{
+    GValue matrix = G_VALUE_INIT;
+
+    gst_value_array_init(&matrix, 9);
+    for (const double number : warp.matrix().val) {
+        GValue value = G_VALUE_INIT;
+        g_value_init(&value, G_TYPE_DOUBLE);
+        g_value_set_double(&value, number);
+        gst_value_array_append_and_take_value(&matrix, &value);
+    }
+    gst_structure_take_value(structure, "matrix", &matrix);
+}
+
 GstStructure *to_structure(const PlaneAlignment &plane)
 {
     const double degrees = plane.warp.rotation() * 180.0 / std::numbers::pi;
+    const cv::Point2d shift = plane.warp.shift();
+    GstStructure *structure =
+        gst_structure_new("plane", "dx", G_TYPE_DOUBLE, shift.x, "dy", G_TYPE_DOUBLE, shift.y, "scale",
+                          G_TYPE_DOUBLE, plane.warp.scale(), "rotation", G_TYPE_DOUBLE, degrees, "trusted",
+                          G_TYPE_BOOLEAN, plane.trusted, nullptr);
 
-    return gst_structure_new("plane", "dx", G_TYPE_DOUBLE, plane.warp.dx, "dy", G_TYPE_DOUBLE, plane.warp.dy,
-                             "scale", G_TYPE_DOUBLE, plane.warp.scale(), "rotation", G_TYPE_DOUBLE, degrees,
-                             "trusted", G_TYPE_BOOLEAN, plane.trusted, nullptr);
+    append_matrix(structure, plane.warp);
+    return structure;
 }
 
 } // namespace

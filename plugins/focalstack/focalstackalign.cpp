@@ -6,14 +6,21 @@
  * Brings the planes of each focal stack onto its middle plane, number planes / 2: undoes the zoom that comes
  * with focusing (focus breathing), vibration, and the shake of a hand while the sweep was taken.
  *
- * The shift, turn and zoom of each plane are found in its pictures, by following corners between planes
- * (Lucas-Kanade, RANSAC) and solving for all planes together. A scene without texture shows nothing of the
- * kind: such planes are not trusted, and go with their neighbours. What parallax does to a scene of some
- * depth when the camera itself moves cannot be undone by a warp.
+ * How each plane lies is found in its pictures, by following corners between planes (Lucas-Kanade, RANSAC)
+ * and solving for all planes together. Pictures of every size are matched at 160, 480 and 1000 pixels, so
+ * that planes far apart in focus find each other while they are small. With motion-model=auto it is shift,
+ * turn and zoom, or a homography where that explains clearly more, as it does for a phone in the hand. What
+ * parallax does to a scene of some depth when the camera itself moves cannot be undone by a warp.
+ *
+ * A plane is trusted if its corners lie where the warp says, in all quarters of the picture, and if no other
+ * shift fits as well, as on a keyboard. Of a plane that is not trusted nothing is taken: it gets the picture
+ * of its neighbour, softened. A plane without texture, of which nothing can be said, goes with its
+ * neighbours. Each of the two is told once, by a warning, and by `stats`.
  *
  * Moved planes are resampled with Lanczos' kernel, since with a softer one noise and sharpness differ from
- * plane to plane, which is what depth from focus looks at. Size stays, so what moves in over the border is
- * the picture, reflected there. Planes that lie within 0.02 pixels of their place are copied.
+ * plane to plane, which is what depth from focus looks at. Size stays; what a plane does not show at its
+ * border is taken from its neighbour towards the middle, so that depth and all-in-focus picture
+ * come from the planes that do show it. Planes that lie within 0.02 pixels of their place are copied.
  *
  * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
  * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.
@@ -33,6 +40,7 @@
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/focalstackalign_properties.h"
 #include "focalstack/partial_stack.h"
+#include "focalstack/plane_placing.h"
 #include "focalstack/stack_aligner.h"
 #include "focalstack/stack_pictures.h"
 
@@ -48,6 +56,8 @@ struct FocalStackAlignState {
     /* Guarded by the sink pad's stream lock. */
     std::optional<dff::StackPool> pool;
     dff::StackClock clock;
+    bool told_untrusted = false;
+    bool told_blank = false;
     std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
 
     /* Guarded by the object's lock. */
@@ -86,34 +96,92 @@ private:
     GstObject *object_;
 };
 
+std::optional<dff::MotionModel> model_of(dff::MotionChoice choice)
+{
+    switch (choice) {
+    case dff::MotionChoice::Similarity:
+        return dff::MotionModel::Similarity;
+    case dff::MotionChoice::Homography:
+        return dff::MotionModel::Homography;
+    default:
+        return {};
+    }
+}
+
 std::vector<dff::PlaneAlignment> estimate(GstFocalStackAlign *self, const dff::StackPictures &pictures,
-                                          unsigned planes)
+                                          unsigned planes, dff::MotionChoice choice)
 {
     try {
         std::vector<cv::Mat> lumas;
         for (unsigned z = 0; z < planes; z++)
             lumas.push_back(pictures.component(z, 0));
-        return dff::align_stack(lumas);
+        return dff::align_stack(lumas, model_of(choice));
     } catch (const cv::Exception &exception) {
         GST_WARNING_OBJECT(self, "the stack is left as it is: %s", exception.what());
-        return std::vector<dff::PlaneAlignment>(planes);
+        return std::vector<dff::PlaneAlignment>(planes, {.warp = {}, .trusted = false, .blank = true});
     }
 }
 
 std::vector<dff::PlaneAlignment> find_alignments(GstFocalStackAlign *self, const dff::StackPictures &pictures,
-                                                 unsigned planes)
+                                                 unsigned planes, const dff::AlignSettings &settings)
 {
     const FocalStackAlignState &state = *self->state;
     return state.calibration ? state.calibration->alignments(pictures.component(0, 0).size(), planes)
-                             : estimate(self, pictures, planes);
+                             : estimate(self, pictures, planes, settings.motion_model);
 }
 
-void undo_warps(const dff::StackPictures &from, const dff::StackPictures &to,
-                std::span<const dff::PlaneAlignment> alignments)
+void place_planes(const dff::StackPictures &from, const dff::StackPictures &to,
+                  std::span<const dff::PlaneAlignment> alignments)
 {
-    for (unsigned z = 0; z < alignments.size(); z++) {
-        for (unsigned i = 0; i < from.components(); i++)
-            dff::undo_warp(from.component(z, i), to.component(z, i), alignments[z].warp, from.step(i));
+    for (unsigned i = 0; i < from.components(); i++) {
+        std::vector<cv::Mat> aligned;
+        for (unsigned z = 0; z < alignments.size(); z++) {
+            aligned.push_back(to.component(z, i));
+            if (dff::is_shown(alignments[z]))
+                dff::undo_warp(from.component(z, i), aligned[z], alignments[z].warp, from.step(i));
+        }
+        dff::fill_hidden(aligned, alignments, from.step(i));
+    }
+}
+
+/* "3, 4 and 7" is said as "3, 4, 7". */
+std::string numbers_of(std::span<const dff::PlaneAlignment> alignments, bool blank)
+{
+    std::string text;
+
+    for (std::size_t z = 0; z < alignments.size(); z++) {
+        if (!alignments[z].trusted && alignments[z].blank == blank)
+            text += (text.empty() ? "" : ", ") + std::to_string(z);
+    }
+    return text;
+}
+
+/* Each cause once, until the element is started anew. */
+void tell_of_trust(GstFocalStackAlign *self, std::span<const dff::PlaneAlignment> alignments)
+{
+    FocalStackAlignState &state = *self->state;
+    const std::string untrusted = numbers_of(alignments, false), blank = numbers_of(alignments, true);
+
+    GST_DEBUG_OBJECT(self, "planes not trusted: %s; without texture: %s",
+                     untrusted.empty() ? "none" : untrusted.c_str(), blank.empty() ? "none" : blank.c_str());
+    if (!untrusted.empty() && !state.told_untrusted) {
+        state.told_untrusted = true;
+        GST_ELEMENT_WARNING(
+            self, STREAM, FAILED,
+            ("Planes %s of a stack of %zu do not fit the others by any shift, turn, zoom or perspective. "
+             "Nothing is "
+             "taken from them. Hold the camera still, or give the planes in the order of their focus.",
+             untrusted.c_str(), alignments.size()),
+            ("said once; the property stats tells the planes of every stack"));
+    }
+    if (!blank.empty() && !state.told_blank) {
+        state.told_blank = true;
+        GST_ELEMENT_WARNING(
+            self, STREAM, FAILED,
+            ("Planes %s of a stack of %zu show no texture by which they could be aligned. They are "
+             "moved with their neighbours.",
+             blank.c_str(), alignments.size()),
+            ("said once; the property stats tells the planes of every stack"));
     }
 }
 
@@ -133,6 +201,7 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
 {
     GstFocalStackInfo info;
 
+    GST_INFO_OBJECT(base, "caps %" GST_PTR_FORMAT, caps);
     if (!gst_focal_stack_info_from_caps(&info, caps))
         return FALSE;
     if (const auto problem = dff::too_large(info)) {
@@ -196,10 +265,15 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
         GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error->message), (nullptr));
         return GST_FLOW_ERROR;
     }
+    dff::AlignSettings settings;
+    {
+        const ObjectLock lock(self);
+        settings = self->state->settings;
+    }
     std::vector<dff::PlaneAlignment> alignments;
     try {
-        alignments = find_alignments(self, *from, info.planes);
-        undo_warps(*from, *to, alignments);
+        alignments = find_alignments(self, *from, info.planes, settings);
+        place_planes(*from, *to, alignments);
     } catch (const cv::Exception &exception) {
         GST_ELEMENT_ERROR(self, STREAM, FAILED, ("The planes of the stack cannot be warped."),
                           ("%s", exception.what()));
@@ -209,6 +283,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
         return GST_FLOW_ERROR;
     }
     self->state->clock.stamp(output, info.frame);
+    tell_of_trust(self, alignments);
     {
         const ObjectLock lock(self);
         self->state->statistics.add(std::move(alignments));
@@ -277,6 +352,7 @@ gboolean start(GstBaseTransform *base)
         return FALSE;
     const ObjectLock lock(base);
     state->clock = {};
+    state->told_untrusted = state->told_blank = false;
     state->statistics = {};
     state->latency = 0;
     return TRUE;
@@ -321,14 +397,15 @@ void install_properties(GObjectClass *object_class)
      * is an array with a structure for each plane of the last stack, nearest first, that says where the
      * picture of the middle plane lies in it: "dx" and "dy" (double), the shift of the centre in pixels,
      * right and down; "scale" (double), the zoom about the centre; "rotation" (double), degrees clockwise;
-     * "trusted" (boolean), whether this was found in the pictures.
+     * "matrix" (array of 9 doubles), the whole homography row by row, on pixels from the centre; "trusted"
+     * (boolean), whether this was found in the pictures.
      */
     g_object_class_install_property(
         object_class, property_stats,
         g_param_spec_boxed(
             "stats", "Statistics",
             "Stacks aligned, planes not trusted, and for each plane of the last stack dx and dy "
-            "(pixels), scale, rotation (degrees) and whether they are trusted",
+            "(pixels), scale, rotation (degrees), the matrix and whether they are trusted",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 }
 

@@ -6,7 +6,7 @@ namespace dff {
 namespace {
 
 namespace property {
-enum : guint { Mode = 1, Calibration, End };
+enum : guint { Mode = 1, Calibration, MotionModel, End };
 } // namespace property
 static_assert(property::End == align_properties_end);
 
@@ -21,6 +21,22 @@ GType align_mode_get_type()
     };
     if (g_once_init_enter(&type))
         g_once_init_leave(&type, g_enum_register_static("GstFocalStackAlignMode", values));
+    return type;
+}
+
+GType motion_model_get_type()
+{
+    static GType type;
+    static const GEnumValue values[] = {
+        {static_cast<int>(MotionChoice::Auto),
+         "Homographies where they explain clearly more, else similarities", "auto"},
+        {static_cast<int>(MotionChoice::Similarity), "Shift, turn and zoom", "similarity"},
+        {static_cast<int>(MotionChoice::Homography), "Perspective too, as a phone in the hand needs it",
+         "homography"},
+        {0, nullptr, nullptr},
+    };
+    if (g_once_init_enter(&type))
+        g_once_init_leave(&type, g_enum_register_static("GstFocalStackAlignMotionModel", values));
     return type;
 }
 
@@ -43,6 +59,12 @@ void install_align_properties(GObjectClass *object_class)
             "File of mode=calibration (YAML): image_width, image_height, and planes, a list, nearest "
             "first, of dx and dy (pixels), scale and rotation (degrees) as stats tells them",
             "", settable));
+    gst_type_mark_as_plugin_api(motion_model_get_type(), static_cast<GstPluginAPIFlags>(0));
+    g_object_class_install_property(
+        object_class, property::MotionModel,
+        g_param_spec_enum("motion-model", "Motion model",
+                          "What mode=estimate takes to lie between the pictures of two planes",
+                          motion_model_get_type(), static_cast<int>(MotionChoice::Auto), settable));
 }
 
 bool set_align_property(AlignSettings &settings, guint id, const GValue *value)
@@ -53,6 +75,9 @@ bool set_align_property(AlignSettings &settings, guint id, const GValue *value)
         return true;
     case property::Calibration:
         settings.calibration = g_value_get_string(value) ? g_value_get_string(value) : "";
+        return true;
+    case property::MotionModel:
+        settings.motion_model = static_cast<MotionChoice>(g_value_get_enum(value));
         return true;
     default:
         return false;
@@ -67,6 +92,9 @@ bool get_align_property(const AlignSettings &settings, guint id, GValue *value)
         return true;
     case property::Calibration:
         g_value_set_string(value, settings.calibration.c_str());
+        return true;
+    case property::MotionModel:
+        g_value_set_enum(value, static_cast<int>(settings.motion_model));
         return true;
     default:
         return false;

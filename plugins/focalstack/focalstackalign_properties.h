@@ -9,15 +9,17 @@
 namespace dff {
 
 enum class AlignMode { Estimate, Calibration };
+enum class MotionChoice { Auto, Similarity, Homography };
 
 /* What a user can set on focalstackalign. */
 struct AlignSettings {
     AlignMode mode = AlignMode::Estimate;
     std::string calibration; /* file, or empty */
+    MotionChoice motion_model = MotionChoice::Auto;
 };
 
 /* The properties of focalstackalign, from 1 to align_properties_end - 1. */
-constexpr guint align_properties_end = 3;
+constexpr guint align_properties_end = 4;
 
 void install_align_properties(GObjectClass *object_class);
 

@@ -2,60 +2,88 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <opencv2/core.hpp>
 
 namespace dff {
 
-/* A similarity of the picture plane about the picture's centre c: p goes to c + S (p - c) + d, where
- * S = [cosine -sine; sine cosine] scales and turns, and d = (dx, dy) shifts, in pixels right and down. */
-struct PlaneWarp {
-    double cosine = 1.0;
-    double sine = 0.0;
-    double dx = 0.0;
-    double dy = 0.0;
+/* A homography of the picture plane about the picture's centre: pixels from the centre, right and down, go to
+ * pixels from the centre. Mostly it is a similarity: it scales, turns and shifts. */
+class PlaneWarp {
+public:
+    PlaneWarp() = default;
 
-    double scale() const { return std::hypot(cosine, sine); }
+    /* p goes to S p + d, where S = [cosine -sine; sine cosine] scales and turns, and d = (dx, dy) shifts. */
+    PlaneWarp(double cosine, double sine, double dx, double dy)
+        : matrix_(cosine, -sine, dx, sine, cosine, dy, 0.0, 0.0, 1.0)
+    {
+    }
 
-    /* Radians, from the x axis towards the y axis: clockwise on a screen. */
-    double rotation() const { return std::atan2(sine, cosine); }
+    /* Scaled so that its last number is 1. */
+    explicit PlaneWarp(const cv::Matx33d &matrix) : matrix_(matrix * (1.0 / matrix(2, 2))) {}
 
-    /* Where a point goes; both as pixels from the centre. */
+    const cv::Matx33d &matrix() const { return matrix_; }
+    bool is_affine() const { return matrix_(2, 0) == 0.0 && matrix_(2, 1) == 0.0; }
+
+    /* Where a point goes. */
     cv::Point2d apply(cv::Point2d point) const
     {
-        return {cosine * point.x - sine * point.y + dx, sine * point.x + cosine * point.y + dy};
+        const cv::Vec3d image = matrix_ * cv::Vec3d(point.x, point.y, 1.0);
+        return {image[0] / image[2], image[1] / image[2]};
     }
 
-    PlaneWarp inverse() const
+    PlaneWarp inverse() const { return PlaneWarp(matrix_.inv()); }
+
+    /* Where the centre goes. */
+    cv::Point2d shift() const { return {matrix_(0, 2), matrix_(1, 2)}; }
+
+    /* Of the similarity that is nearest to the warp at the centre. */
+    double scale() const { return std::hypot(cosine(), sine()); }
+
+    /* Radians, from the x axis towards the y axis: clockwise on a screen. */
+    double rotation() const { return std::atan2(sine(), cosine()); }
+
+    /* The same warp where the pictures are larger by these factors. */
+    PlaneWarp in_picture_larger_by(double x, double y) const
     {
-        const double norm = cosine * cosine + sine * sine;
-        PlaneWarp result{cosine / norm, -sine / norm, 0.0, 0.0};
-        const cv::Point2d shift = result.apply({dx, dy});
-
-        result.dx = -shift.x;
-        result.dy = -shift.y;
-        return result;
+        return PlaneWarp(cv::Matx33d(x, 0, 0, 0, y, 0, 0, 0, 1) * matrix_ *
+                         cv::Matx33d(1.0 / x, 0, 0, 0, 1.0 / y, 0, 0, 0, 1));
     }
 
-    /* How far the corner that moves most may move in a picture of `size`, in pixels. */
+    /* How far the corner that moves most moves in a picture of `size`, in pixels. */
     double largest_shift(cv::Size size) const
     {
-        const double half_diagonal = std::hypot(size.width - 1, size.height - 1) / 2.0;
+        const double x = (size.width - 1) / 2.0, y = (size.height - 1) / 2.0;
+        double largest = 0.0;
 
-        return std::hypot(cosine - 1.0, sine) * half_diagonal + std::hypot(dx, dy);
+        for (const cv::Point2d corner : {cv::Point2d{-x, -y}, {x, -y}, {-x, y}, {x, y}})
+            largest = std::max(largest, cv::norm(apply(corner) - corner));
+        return largest;
     }
 
     /* The same on the pixel coordinates of a component of `size` with one sample for each `step` x `step`
-     * pixels (2 for the chroma of 4:2:0), as OpenCV's 2x3 matrix. */
-    cv::Matx23d matrix(cv::Size size, int step = 1) const
+     * pixels (2 for the chroma of 4:2:0), as OpenCV's 3x3 matrix. */
+    cv::Matx33d pixel_matrix(cv::Size size, int step = 1) const
     {
-        const cv::Point2d centre{(size.width - 1) / 2.0, (size.height - 1) / 2.0};
-        const cv::Point2d shift{dx / step, dy / step};
+        const double x = (size.width - 1) / 2.0, y = (size.height - 1) / 2.0, s = step;
 
-        return {cosine, -sine,  centre.x - cosine * centre.x + sine * centre.y + shift.x,
-                sine,   cosine, centre.y - sine * centre.x - cosine * centre.y + shift.y};
+        return cv::Matx33d(1.0 / s, 0, x, 0, 1.0 / s, y, 0, 0, 1) * matrix_ *
+               cv::Matx33d(s, 0, -s * x, 0, s, -s * y, 0, 0, 1);
     }
+
+private:
+    double cosine() const { return (linear(0, 0) + linear(1, 1)) / 2.0; }
+    double sine() const { return (linear(1, 0) - linear(0, 1)) / 2.0; }
+
+    /* The derivative of the image point at the centre. */
+    double linear(int row, int column) const
+    {
+        return matrix_(row, column) - matrix_(row, 2) * matrix_(2, column);
+    }
+
+    cv::Matx33d matrix_ = cv::Matx33d::eye();
 };
 
 } // namespace dff

@@ -66,6 +66,8 @@ std::vector<PlaneStats> planes_of(const GstStructure *stats)
         EXPECT_TRUE(gst_structure_get(plane, "dx", G_TYPE_DOUBLE, &values.dx, "dy", G_TYPE_DOUBLE, &values.dy,
                                       "scale", G_TYPE_DOUBLE, &values.scale, "rotation", G_TYPE_DOUBLE,
                                       &values.rotation, "trusted", G_TYPE_BOOLEAN, &values.trusted, nullptr));
+        const GValue *matrix = gst_structure_get_value(plane, "matrix");
+        values.perspective = g_value_get_double(gst_value_array_get_value(matrix, 6));
     }
     return result;
 }

@@ -20,6 +20,7 @@ GstBuffer *new_stack(const GstFocalStackInfo &info, const std::vector<cv::Mat> &
 /* What `stats` tells. */
 struct PlaneStats {
     double dx = 0.0, dy = 0.0, scale = 0.0, rotation = 0.0;
+    double perspective = 0.0; /* the first number of the matrix's last row */
     gboolean trusted = FALSE;
 };
 std::vector<PlaneStats> planes_of(const GstStructure *stats);

@@ -25,6 +25,21 @@ cv::Mat1f make_texture(cv::Size size, cv::RNG &random)
     return texture;
 }
 
+/* All alike. */
+cv::Mat1f make_keys(cv::Size size, double period)
+{
+    cv::Mat1f keys(size);
+
+    for (int y = 0; y < size.height; y++) {
+        for (int x = 0; x < size.width; x++) {
+            const bool gap = std::fmod(x, period) < 0.3 * period || std::fmod(y, period) < 0.3 * period;
+            keys(y, x) = gap ? 60.0F : 180.0F;
+        }
+    }
+    cv::GaussianBlur(keys, keys, {}, 0.8);
+    return keys;
+}
+
 /* Gaussian blur whose circle of confusion grows with the distance from plane z; a disk of diameter c has the
  * variance of a Gaussian of sigma c / 4. */
 cv::Mat1f focus_at(const cv::Mat1f &texture, double z, const Shaking &shaking)
@@ -59,18 +74,22 @@ ShakenStack::ShakenStack(const Shaking &shaking) : size(shaking.size)
 {
     cv::RNG random(7);
     const cv::Size beyond(size.width + 2 * margin, size.height + 2 * margin);
-    const cv::Mat1f texture = make_texture(beyond, random);
+    const cv::Mat1f texture =
+        shaking.period > 0.0 ? make_keys(beyond, shaking.period) : make_texture(beyond, random);
 
     for (unsigned z = 0; z < shaking.planes; z++) {
         const double scale = 1.0 + shaking.breathing * (z / (shaking.planes - 1.0) - 0.5);
         const double angle = random.gaussian(shaking.rotation);
-        const dff::PlaneWarp warp{scale * std::cos(angle), scale * std::sin(angle),
-                                  random.gaussian(shaking.jitter), random.gaussian(shaking.jitter)};
+        const dff::PlaneWarp similarity(scale * std::cos(angle), scale * std::sin(angle),
+                                        random.gaussian(shaking.jitter), random.gaussian(shaking.jitter));
+        const double tilt = 2.0 * shaking.tilt / std::max(size.width, size.height);
+        const cv::Matx33d perspective(1, 0, 0, 0, 1, 0, random.gaussian(tilt), random.gaussian(tilt), 1);
+        const dff::PlaneWarp warp(similarity.matrix() * perspective);
         cv::Mat1f moved;
         cv::Mat plane;
 
-        cv::warpAffine(focus_at(texture, z, shaking), moved, warp.matrix(beyond), beyond, cv::INTER_LANCZOS4,
-                       cv::BORDER_REFLECT_101);
+        cv::warpPerspective(focus_at(texture, z, shaking), moved, warp.pixel_matrix(beyond), beyond,
+                            cv::INTER_LANCZOS4, cv::BORDER_REFLECT_101);
         moved = moved(cv::Rect({margin, margin}, size)).clone();
         add_noise(moved, shaking, random);
         moved.convertTo(plane, CV_8U);

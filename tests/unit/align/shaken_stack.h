@@ -15,9 +15,11 @@ struct Shaking {
     double breathing = 0.03; /* change of zoom over the sweep */
     double jitter = 1.0;     /* pixels, standard deviation */
     double rotation = 0.0;   /* radians, standard deviation */
+    double tilt = 0.0;       /* change of magnification over half the longer side, standard deviation */
     double blur_step = 2.0;  /* pixels of circle of confusion a plane */
     double gain = 0.0;       /* variance of the noise is gain * I + read^2 */
     double read = 0.0;
+    double period = 0.0; /* pixels; the texture is a grid of keys instead */
 };
 
 /* A textured slope, near on the left and far on the right, as an unsteady camera with focus breathing sees

@@ -111,10 +111,10 @@ TEST(AlignmentCalibration, warps_are_for_any_size_of_the_picture)
     const File file(two_planes);
     const std::vector<PlaneAlignment> half = AlignmentCalibration::load(file.name).alignments({80, 60}, 2);
     ASSERT_EQ(half.size(), 2u);
-    EXPECT_NEAR(half[0].warp.dx, 1.5, 1e-9);
-    EXPECT_NEAR(half[0].warp.dy, -0.5, 1e-9);
+    EXPECT_NEAR(half[0].warp.shift().x, 1.5, 1e-9);
+    EXPECT_NEAR(half[0].warp.shift().y, -0.5, 1e-9);
     EXPECT_NEAR(half[0].warp.scale(), 1.02, 1e-9);
-    EXPECT_NEAR(half[0].warp.sine, 1.02, 1e-9);
+    EXPECT_NEAR(half[0].warp.rotation(), 90.0 * CV_PI / 180.0, 1e-9);
     EXPECT_TRUE(half[1].trusted);
 }
 

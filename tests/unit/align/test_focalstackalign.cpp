@@ -95,6 +95,42 @@ TEST_F(FocalStackAlign, padded_rows_are_read_by_their_video_metas)
         EXPECT_GT(likeness(aligned.get(), z, 0), 0.97) << "plane " << z;
 }
 
+TEST_F(FocalStackAlign, a_plane_that_does_not_fit_is_told_once_and_not_shown)
+{
+    ShakenStack shaken(shaking);
+    cv::flip(shaken.planes[0], shaken.planes[0], -1);
+    start(stack_info("RGB", shaken.size));
+    ASSERT_TRUE(align(new_stack(info_, shaken.planes)));
+    const Owned<GstBuffer> aligned = align(new_stack(info_, shaken.planes));
+
+    EXPECT_EQ(number_of(stats().get(), "untrusted-planes"), 2u);
+    EXPECT_GT(likeness(aligned.get(), 0, 0), 0.9);
+    EXPECT_EQ(count_messages(bus_, GST_MESSAGE_WARNING), 1u);
+}
+
+TEST_F(FocalStackAlign, planes_that_all_fit_warn_of_nothing)
+{
+    const ShakenStack shaken(shaking);
+    start(stack_info("RGB", shaken.size));
+    ASSERT_TRUE(align(new_stack(info_, shaken.planes)));
+
+    EXPECT_EQ(count_messages(bus_, GST_MESSAGE_WARNING), 0u);
+}
+
+TEST_F(FocalStackAlign, a_model_can_be_asked_for)
+{
+    const ShakenStack shaken(
+        {.size = {320, 240}, .planes = planes, .jitter = 2.0, .tilt = 0.02, .blur_step = 0.5});
+    for (const auto &[model, has_perspective] :
+         {std::pair{"auto", true}, {"homography", true}, {"similarity", false}}) {
+        start(stack_info("GRAY8", shaken.size));
+        gst_util_set_object_arg(G_OBJECT(harness_->element), "motion-model", model);
+        ASSERT_TRUE(align(new_stack(info_, shaken.planes)));
+        EXPECT_EQ(std::abs(planes_of(stats().get())[0].perspective) > 1e-6, has_perspective) << model;
+        TearDown();
+    }
+}
+
 TEST(FocalStackAlignPipeline, breathing_of_a_simulated_sweep_is_undone)
 {
     g_autoptr(GstElementFactory) source = gst_element_factory_find("lenssweeptestsrc");

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/plane_placing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace dff {
+namespace {
+
+/* Pixels. Less is not worth a resampling. */
+constexpr double negligible_shift = 0.02;
+
+/* Of a neighbour's detail, what is left in a plane of which nothing is shown. Detail is what is smaller than
+ * a box whose side is this share of the picture's longer side. Some detail must be left: the plane's noise is
+ * looked at. At a border all is left: there softened noise costs depth, and a copy none. */
+constexpr double detail_left = 0.6;
+constexpr double box_share = 0.01;
+constexpr int least_box = 5; /* pixels */
+
+/* Pixels over which a plane fades into what it is filled with. A wider rim costs depth: where two planes mix
+ * they have less noise than others, and lose every contest in which noise has a say. */
+constexpr double fade_start = 1.0;
+constexpr double fade_length = 2.0;
+
+cv::Mat softened(const cv::Mat &picture, cv::Rect place, int step)
+{
+    const int side =
+        std::max(least_box, cvRound(box_share * std::max(picture.cols, picture.rows) * step)) / step;
+    const cv::Size box(side | 1, side | 1);
+    cv::Mat smooth, sharp;
+
+    cv::blur(picture(place), smooth, box); /* looks beyond `place` */
+    smooth.convertTo(smooth, CV_32F);
+    picture(place).convertTo(sharp, CV_32F);
+    cv::addWeighted(sharp, detail_left, smooth, 1.0 - detail_left, 0.0, smooth);
+    return smooth;
+}
+
+/* How much of itself a plane shows in `place`: 1 inside, fading to 0 towards its own border. */
+cv::Mat1f own_share(const PlaneAlignment &alignment, cv::Size size, cv::Rect place, int step)
+{
+    const cv::Matx33d onto_plane = alignment.warp.pixel_matrix(size, step);
+    cv::Mat1f share(place.size(), 0.0F);
+
+    if (!is_shown(alignment))
+        return share;
+    for (int y = 0; y < place.height; y++) {
+        for (int x = 0; x < place.width; x++) {
+            const cv::Vec3d p = onto_plane * cv::Vec3d(place.x + x, place.y + y, 1.0);
+            const double u = p[0] / p[2], v = p[1] / p[2];
+            const double inside = std::min({u, v, size.width - 1 - u, size.height - 1 - v}) * step;
+            share(y, x) = static_cast<float>(std::clamp((inside - fade_start) / fade_length, 0.0, 1.0));
+        }
+    }
+    return share;
+}
+
+/* The part of a component where its plane shows nothing but itself, or a little less. */
+cv::Rect surely_shown(const PlaneAlignment &alignment, cv::Size size, int step)
+{
+    if (!is_shown(alignment))
+        return {};
+
+    const double rim = (fade_start + fade_length) / step;
+    const cv::Matx33d onto_middle = alignment.warp.inverse().pixel_matrix(size, step);
+    const auto image = [&](double x, double y) {
+        const cv::Vec3d p = onto_middle * cv::Vec3d(x, y, 1.0);
+        return cv::Point2d(p[0] / p[2], p[1] / p[2]);
+    };
+    const double right = size.width - 1 - rim, bottom = size.height - 1 - rim;
+    const cv::Point2d a = image(rim, rim), b = image(right, rim), c = image(rim, bottom),
+                      d = image(right, bottom);
+    const cv::Point from(cvCeil(std::max(a.x, c.x)), cvCeil(std::max(a.y, b.y)));
+    const cv::Point to(cvFloor(std::min(b.x, d.x)) + 1, cvFloor(std::min(c.y, d.y)) + 1);
+    if (from.x >= to.x || from.y >= to.y)
+        return {};
+    return cv::Rect(from, to) & cv::Rect({}, size);
+}
+
+void fill_place(const cv::Mat &neighbour, cv::Mat plane, const PlaneAlignment &alignment, cv::Rect place,
+                int step)
+{
+    if (place.empty())
+        return;
+    const cv::Mat1f share = own_share(alignment, plane.size(), place, step);
+    cv::Mat filled, own, shares;
+
+    if (is_shown(alignment))
+        neighbour(place).convertTo(filled, CV_32F);
+    else
+        filled = softened(neighbour, place, step);
+    plane(place).convertTo(own, CV_32F);
+    cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(own.channels()), share), shares);
+    cv::subtract(own, filled, own);
+    cv::multiply(own, shares, own);
+    cv::add(filled, own, filled);
+    filled.convertTo(plane(place), plane.type());
+}
+
+/* What the plane may not show is a frame around what it surely shows. */
+void fill_plane(const cv::Mat &neighbour, const cv::Mat &plane, const PlaneAlignment &alignment, int step)
+{
+    const cv::Rect shown = surely_shown(alignment, plane.size(), step);
+    if (shown.empty()) {
+        fill_place(neighbour, plane, alignment, {{}, plane.size()}, step);
+        return;
+    }
+    const int right = shown.x + shown.width, bottom = shown.y + shown.height;
+    fill_place(neighbour, plane, alignment, {0, 0, plane.cols, shown.y}, step);
+    fill_place(neighbour, plane, alignment, {0, bottom, plane.cols, plane.rows - bottom}, step);
+    fill_place(neighbour, plane, alignment, {0, shown.y, shown.x, shown.height}, step);
+    fill_place(neighbour, plane, alignment, {right, shown.y, plane.cols - right, shown.height}, step);
+}
+
+bool is_in_place(const PlaneWarp &warp, cv::Size size, int step)
+{
+    return warp.largest_shift(size * step) < negligible_shift;
+}
+
+} // namespace
+
+bool is_shown(const PlaneAlignment &alignment)
+{
+    return alignment.trusted || alignment.blank;
+}
+
+void undo_warp(const cv::Mat &plane, cv::Mat aligned, const PlaneWarp &warp, int step)
+{
+    if (is_in_place(warp, plane.size(), step)) {
+        plane.copyTo(aligned);
+        return;
+    }
+    const cv::Matx33d matrix = warp.pixel_matrix(plane.size(), step);
+    constexpr int how = cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP;
+
+    /* The affine function is the faster one. */
+    if (warp.is_affine())
+        cv::warpAffine(plane, aligned, matrix.get_minor<2, 3>(0, 0), plane.size(), how,
+                       cv::BORDER_REFLECT_101);
+    else
+        cv::warpPerspective(plane, aligned, matrix, plane.size(), how, cv::BORDER_REFLECT_101);
+}
+
+void fill_hidden(std::span<const cv::Mat> aligned, std::span<const PlaneAlignment> alignments, int step)
+{
+    const std::size_t middle = middle_plane(aligned.size());
+    const auto fill = [&](std::size_t z, std::size_t neighbour) {
+        if (!is_shown(alignments[z]) || !is_in_place(alignments[z].warp, aligned[z].size(), step))
+            fill_plane(aligned[neighbour], aligned[z], alignments[z], step);
+    };
+
+    for (std::size_t z = middle; z > 0; z--)
+        fill(z - 1, z);
+    for (std::size_t z = middle + 1; z < aligned.size(); z++)
+        fill(z, z - 1);
+}
+
+} // namespace dff

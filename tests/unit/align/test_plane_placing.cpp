@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "focalstack/plane_placing.h"
+
+#include "shaken_stack.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+namespace {
+
+const cv::Size size(120, 90);
+
+cv::Mat noisy_picture(int type, double mean)
+{
+    cv::Mat picture(size, type);
+    cv::RNG random(5);
+    random.fill(picture, cv::RNG::NORMAL, mean, 0.2 * mean);
+    return picture;
+}
+
+/* Planes in their place, but for the first, which lies 20 pixels to the right. */
+std::vector<dff::PlaneAlignment> first_is_moved()
+{
+    return {{dff::PlaneWarp(1.0, 0.0, 20.0, 0.0), true}, {{}, true}, {{}, true}};
+}
+
+double detail(const cv::Mat &picture)
+{
+    cv::Mat laplacian;
+    cv::Laplacian(picture, laplacian, CV_32F);
+    return cv::norm(laplacian, cv::NORM_L1) / static_cast<double>(laplacian.total());
+}
+
+class Types : public testing::TestWithParam<int> {};
+
+} // namespace
+
+TEST(UndoWarp, aligned_planes_look_like_the_middle_one)
+{
+    const ShakenStack stack({.planes = 4, .jitter = 3.0, .rotation = 0.01, .blur_step = 0.0});
+    const auto alignments = dff::align_stack(stack.planes);
+    const cv::Rect inner(10, 10, stack.size.width - 20, stack.size.height - 20);
+
+    for (std::size_t z = 0; z < stack.planes.size(); z++) {
+        cv::Mat aligned(stack.size, CV_8U);
+        dff::undo_warp(stack.planes[z], aligned, alignments[z].warp);
+        EXPECT_GT(cv::PSNR(aligned(inner), stack.planes[2](inner)), 33.0) << "plane " << z;
+    }
+}
+
+TEST(UndoWarp, what_lies_in_its_place_is_copied)
+{
+    const ShakenStack stack({.planes = 2});
+    cv::Mat aligned(stack.size, CV_8U);
+
+    dff::undo_warp(stack.planes[0], aligned, {1.0, 0.0, 0.01, 0.0});
+    EXPECT_EQ(cv::norm(aligned, stack.planes[0], cv::NORM_INF), 0.0);
+}
+
+/* 20 pixels of the plane's own picture are missing at its right border, and a rim of it fades. */
+TEST_P(Types, what_a_plane_does_not_show_is_taken_from_its_neighbour)
+{
+    const cv::Mat neighbour = noisy_picture(GetParam(), 100.0);
+    cv::Mat own(size, GetParam(), cv::Scalar::all(10));
+    const std::vector<cv::Mat> aligned{own, neighbour, neighbour.clone()};
+    dff::fill_hidden(aligned, first_is_moved());
+
+    const cv::Mat kept = own.colRange(30, size.width - 36).rowRange(20, size.height - 20);
+    EXPECT_EQ(cv::norm(kept, cv::Mat(kept.size(), kept.type(), cv::Scalar::all(10)), cv::NORM_INF), 0.0);
+
+    const cv::Rect hidden(size.width - 19, 0, 19, size.height);
+    const cv::Scalar difference = cv::mean(own(hidden)) - cv::mean(neighbour(hidden));
+    EXPECT_LT(std::abs(difference[0]), 2.0);
+    EXPECT_NEAR(detail(own(hidden)) / detail(neighbour(hidden)), 1.0, 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(FillHidden, Types,
+                         testing::Values(CV_8UC1, CV_8UC2, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC4));
+
+TEST(FillHidden, nothing_is_taken_from_a_plane_that_is_not_trusted)
+{
+    const cv::Mat good = noisy_picture(CV_8UC3, 100.0);
+    cv::Mat wrong(size, CV_8UC3, cv::Scalar::all(255)), beyond = wrong.clone();
+    const std::vector<cv::Mat> aligned{beyond, wrong, good, good.clone()};
+    std::vector<dff::PlaneAlignment> alignments(4);
+    alignments[2].trusted = alignments[3].trusted = true;
+    dff::fill_hidden(aligned, alignments);
+
+    EXPECT_LT(std::abs(cv::mean(wrong)[0] - cv::mean(good)[0]), 1.0);
+    EXPECT_LT(detail(wrong), 0.8 * detail(good));
+    EXPECT_LT(detail(beyond), 0.8 * detail(wrong)) << "further away is softer";
+}
+
+TEST(FillHidden, a_plane_without_texture_stays)
+{
+    cv::Mat blank(size, CV_8UC1, cv::Scalar::all(30));
+    const std::vector<cv::Mat> aligned{blank, noisy_picture(CV_8UC1, 100.0)};
+    std::vector<dff::PlaneAlignment> alignments(2);
+    alignments[0].blank = alignments[1].trusted = true;
+    dff::fill_hidden(aligned, alignments);
+
+    EXPECT_EQ(cv::countNonZero(blank != 30), 0);
+}
+
+TEST(FillHidden, a_picture_smaller_than_the_rim_is_filled)
+{
+    cv::Mat own(10, 10, CV_8UC1, cv::Scalar::all(10));
+    const std::vector<cv::Mat> aligned{own, cv::Mat(10, 10, CV_8UC1, cv::Scalar::all(90))};
+    const std::vector<dff::PlaneAlignment> alignments{{dff::PlaneWarp(1.0, 0.0, 5.0, 5.0), true}, {{}, true}};
+    dff::fill_hidden(aligned, alignments, 2);
+
+    EXPECT_EQ(own.at<uchar>(9, 9), 90);
+}
+
+TEST(FillHidden, the_border_of_breathing_planes_looks_like_the_middle_one)
+{
+    const ShakenStack stack({.planes = 5, .breathing = 0.2, .jitter = 0.0, .blur_step = 0.0});
+    const auto alignments = dff::align_stack(stack.planes);
+    std::vector<cv::Mat> aligned;
+    for (std::size_t z = 0; z < stack.planes.size(); z++) {
+        aligned.emplace_back(stack.size, CV_8U);
+        dff::undo_warp(stack.planes[z], aligned[z], alignments[z].warp);
+    }
+    dff::fill_hidden(aligned, alignments);
+
+    for (std::size_t z = 0; z < stack.planes.size(); z++)
+        EXPECT_GT(cv::PSNR(aligned[z], stack.planes[2]), 24.0) << "plane " << z;
+}
