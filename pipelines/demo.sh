@@ -116,7 +116,8 @@ photographs() {
     # Photographs lie farther apart in focus than the planes of a video sweep: hence blend=sharp.
     say "Aligning $planes photographs of $size, then depth and all-in-focus"
     launch "$(graph "multifilesrc location=demo/frames/%02d stop-index=$((planes - 1)) caps=$caps,framerate=$planes/1 !
-        lenssweeptag planes=$planes ! focalstackmux ! focalstackalign" sharp) $(pictures "imagefreeze num-buffers=75 !")"
+        lenssweeptag planes=$planes ! focalstackmux !
+        focalstackalign even-brightness=true" sharp) $(pictures "imagefreeze num-buffers=75 !")"
     result="1 stack of $planes photographs"
 }
 

@@ -6,7 +6,7 @@ namespace dff {
 namespace {
 
 namespace property {
-enum : guint { Mode = 1, Calibration, MotionModel, End };
+enum : guint { Mode = 1, Calibration, MotionModel, EvenBrightness, End };
 } // namespace property
 static_assert(property::End == align_properties_end);
 
@@ -65,6 +65,13 @@ void install_align_properties(GObjectClass *object_class)
         g_param_spec_enum("motion-model", "Motion model",
                           "What mode=estimate takes to lie between the pictures of two planes",
                           motion_model_get_type(), static_cast<int>(MotionChoice::Auto), settable));
+    g_object_class_install_property(
+        object_class, property::EvenBrightness,
+        g_param_spec_boolean(
+            "even-brightness", "Even brightness",
+            "Give all planes of a stack the same brightness and colour, by a gain and an offset "
+            "a plane and channel: for photographs and lights that flicker",
+            FALSE, settable));
 }
 
 bool set_align_property(AlignSettings &settings, guint id, const GValue *value)
@@ -78,6 +85,9 @@ bool set_align_property(AlignSettings &settings, guint id, const GValue *value)
         return true;
     case property::MotionModel:
         settings.motion_model = static_cast<MotionChoice>(g_value_get_enum(value));
+        return true;
+    case property::EvenBrightness:
+        settings.even_brightness = g_value_get_boolean(value);
         return true;
     default:
         return false;
@@ -95,6 +105,9 @@ bool get_align_property(const AlignSettings &settings, guint id, GValue *value)
         return true;
     case property::MotionModel:
         g_value_set_enum(value, static_cast<int>(settings.motion_model));
+        return true;
+    case property::EvenBrightness:
+        g_value_set_boolean(value, settings.even_brightness);
         return true;
     default:
         return false;

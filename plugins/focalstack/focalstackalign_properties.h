@@ -16,10 +16,11 @@ struct AlignSettings {
     AlignMode mode = AlignMode::Estimate;
     std::string calibration; /* file, or empty */
     MotionChoice motion_model = MotionChoice::Auto;
+    bool even_brightness = false;
 };
 
 /* The properties of focalstackalign, from 1 to align_properties_end - 1. */
-constexpr guint align_properties_end = 4;
+constexpr guint align_properties_end = 5;
 
 void install_align_properties(GObjectClass *object_class);
 

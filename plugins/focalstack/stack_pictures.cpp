@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/stack_pictures.h"
 
+#include <algorithm>
+
 namespace dff {
 
 std::unique_ptr<StackPictures> StackPictures::map(const GstFocalStackInfo &info, GstBuffer *buffer,
@@ -34,22 +36,40 @@ unsigned StackPictures::components() const
     return GST_VIDEO_INFO_N_PLANES(&info_.frame);
 }
 
-guint StackPictures::first_channel(unsigned component) const
+std::vector<guint> StackPictures::channels(unsigned component) const
 {
-    gint channels[GST_VIDEO_MAX_COMPONENTS];
+    gint numbers[GST_VIDEO_MAX_COMPONENTS];
+    std::vector<guint> result;
 
-    gst_video_format_info_component(info_.frame.finfo, component, channels);
-    return static_cast<guint>(channels[0]);
+    gst_video_format_info_component(info_.frame.finfo, component, numbers);
+    for (const gint number : numbers) {
+        if (number >= 0)
+            result.push_back(static_cast<guint>(number));
+    }
+    std::ranges::sort(result, {},
+                      [&](guint channel) { return GST_VIDEO_INFO_COMP_POFFSET(&info_.frame, channel); });
+    return result;
+}
+
+std::vector<double> StackPictures::black(unsigned component) const
+{
+    gint offset[GST_VIDEO_MAX_COMPONENTS], scale[GST_VIDEO_MAX_COMPONENTS];
+    std::vector<double> result;
+
+    gst_video_color_range_offsets(info_.frame.colorimetry.range, info_.frame.finfo, offset, scale);
+    for (const guint channel : channels(component))
+        result.push_back(offset[channel]);
+    return result;
 }
 
 int StackPictures::step(unsigned component) const
 {
-    return 1 << GST_VIDEO_FORMAT_INFO_W_SUB(info_.frame.finfo, first_channel(component));
+    return 1 << GST_VIDEO_FORMAT_INFO_W_SUB(info_.frame.finfo, channels(component).front());
 }
 
 cv::Mat StackPictures::component(unsigned plane, unsigned component) const
 {
-    const guint channel = first_channel(component);
+    const guint channel = channels(component).front();
     const int bytes = GST_VIDEO_INFO_COMP_DEPTH(&info_.frame, channel) > 8 ? 2 : 1;
     const int channels = GST_VIDEO_INFO_COMP_PSTRIDE(&info_.frame, channel) / bytes;
     const Place &place = planes_[plane];

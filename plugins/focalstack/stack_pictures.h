@@ -31,6 +31,9 @@ public:
     /* Component 0 is luma, or all colours. */
     cv::Mat component(unsigned plane, unsigned component) const;
 
+    /* What each colour channel of the component is without light, or without colour. */
+    std::vector<double> black(unsigned component) const;
+
 private:
     struct Place {
         gsize offset[GST_VIDEO_MAX_PLANES];
@@ -39,8 +42,8 @@ private:
 
     StackPictures(const GstFocalStackInfo &info, GstBuffer *buffer) : info_(info), buffer_(buffer) {}
 
-    /* The number of the first colour channel in the component. */
-    guint first_channel(unsigned component) const;
+    /* The numbers of the colour channels in the component, in the order of their bytes. */
+    std::vector<guint> channels(unsigned component) const;
 
     GstFocalStackInfo info_;
     GstBuffer *buffer_;

@@ -136,3 +136,12 @@ double FocalStackAlign::likeness(GstBuffer *stack, unsigned z, unsigned channel)
     gst_buffer_unmap(stack, &map);
     return score.at<float>(0);
 }
+
+double FocalStackAlign::brightness(GstBuffer *stack, unsigned z, unsigned channel) const
+{
+    GstMapInfo map;
+    gst_buffer_map(stack, &map, GST_MAP_READ);
+    const double mean = cv::mean(channel_of(info_, map.data, z, channel))[0];
+    gst_buffer_unmap(stack, &map);
+    return mean;
+}

@@ -39,6 +39,9 @@ protected:
     /* How alike a plane and the middle plane are, by their normalised correlation away from the border. */
     double likeness(GstBuffer *stack, unsigned z, unsigned channel) const;
 
+    /* The mean of a plane's channel. */
+    double brightness(GstBuffer *stack, unsigned z, unsigned channel) const;
+
     GstFocalStackInfo info_{};
     Owned<GstHarness> harness_;
     GstBus *bus_ = nullptr;

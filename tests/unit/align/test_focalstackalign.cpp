@@ -131,6 +131,24 @@ TEST_F(FocalStackAlign, a_model_can_be_asked_for)
     }
 }
 
+TEST_P(Formats, planes_come_to_be_equally_bright)
+{
+    ShakenStack shaken(shaking);
+    for (unsigned z = 0; z < planes; z++)
+        shaken.planes[z].convertTo(shaken.planes[z], -1, 0.6 + 0.1 * z, 20.0);
+    start(stack_info(GetParam(), shaken.size));
+    g_object_set(harness_->element, "even-brightness", TRUE, nullptr);
+    const Owned<GstBuffer> aligned = align(new_stack(info_, shaken.planes));
+    ASSERT_TRUE(aligned);
+
+    for (unsigned z = 0; z < planes; z++) {
+        for (unsigned channel = 0; channel < GST_VIDEO_INFO_N_COMPONENTS(&info_.frame); channel++)
+            EXPECT_NEAR(brightness(aligned.get(), z, channel) / brightness(aligned.get(), middle, channel),
+                        1.0, 0.03)
+                << "plane " << z << " channel " << channel;
+    }
+}
+
 TEST(FocalStackAlignPipeline, breathing_of_a_simulated_sweep_is_undone)
 {
     g_autoptr(GstElementFactory) source = gst_element_factory_find("lenssweeptestsrc");
