@@ -171,14 +171,15 @@ __kernel void blend(__global const ushort *volume, __global const uchar *weights
                 sum / total + upsampled(coarse_result, coarse_rows(coarse, channel, x, y)));
 }
 
-/* The weights of 16 samples in plane z: of a component that is not subsampled, those of level 1 spread. */
+/* The weights of 16 samples in plane z: the cells of level 1 are those of a component that is subsampled. */
 INLINE float16 weights_of_samples(__global const uchar *weights, Level level, int z, int x, int y, int subsampling)
 {
     return subsampling == 1 ? upsampled(weights, coarse_rows(level, z, x, y))
                             : convert_float16(*(__global const lanes8 *)(weights + row_of(level, z, y) + x));
 }
 
-/* R_0 of one component: work-items (16 pixels of it, row). `weight_level` is level 1, `coarse` the component's first. */
+/* R_0 of one component: work-items (16 pixels of it, row). `weight_level` is level 1, `coarse` the component's
+ * second. */
 __kernel void blend_samples(__global const uchar *stack, __global const ulong2 *table, int first_row, int2 size,
                             __global const uchar *weights, Level weight_level, int subsampling,
                             __global const ushort *coarse_volume, __global const float *coarse_result, Level coarse,

@@ -3,20 +3,23 @@
  *
  * How much of each plane the all-in-focus picture of sharp_blend.cl takes, in every band of detail. At level l >= 1
  *
- *     w_z = max(1 - |z - u| / REACH, 0) * (D_z / max D)^16,   D_z = binomial_5x5(max_5x5(F_z)) + FLOOR
+ *     w_z = max(1 - |z - u| / REACH, 0) * (D_z / max D)^32,   D_z = binomial_5x5(max_5x5(F_z)) + FLOOR
  *
  * F at level 1 is the mean of 2 x 2 gradients of luma, at the levels above the greatest of 2 x 2. The sharpest edge
  * around decides, and the farther around the coarser the band: the skirt of a blurred edge is as wide as the bands that
- * it shows in, and would win beside the edge itself. u is the plane position of the depth, the nearest of the pixels
- * that have one; without any, every plane has the first factor 1. Where nothing is sharp all D are alike and the planes
- * are averaged.
+ * it shows in, and would win beside the edge itself. In the finest band, that of single pixels, it hardly shows; its
+ * weights lie in cells of level 1 too, with max_3x3 instead of max_5x5 and the 64th power, since neighbouring planes
+ * differ by little.
+ *
+ * u is the plane position of the depth, the nearest of the pixels that have one; without any, every plane has the first
+ * factor 1. Where nothing is sharp all D are alike and the planes are averaged.
  *
  * The gradient is max(a, b) + 3/8 min(a, b) of the two directions' Sobel sums a and b, in 1/SHARPNESS_ONE DN; weights
  * are 255 w / sum w. Work-items are (16 cells, row, plane) of a level.
  */
 #include "pyramid_rows.cl"
 
-#define REACH 2.0f
+#define REACH 2.5f
 #define SHARPNESS_ONE 128
 #define FLOOR (0.1f * SHARPNESS_ONE)
 
@@ -120,6 +123,12 @@ __kernel void greatest_of_five(__global const ushort *volume, __global ushort *r
                 max(max(max(cells[0], cells[1]), max(cells[2], cells[3])), cells[4]));
 }
 
+__kernel void greatest_of_three(__global const ushort *volume, __global ushort *result, Level level, int2 step)
+{
+    FIVE_CELLS;
+    store_cells(result + row_of(level, z, y), x, level.width, max(max(cells[1], cells[2]), cells[3]));
+}
+
 /* Weights 1 4 6 4 1; F has at most 22440. */
 __kernel void soften(__global const ushort *volume, __global ushort *result, Level level, int2 step)
 {
@@ -169,16 +178,17 @@ INLINE float16 nearness(float16 u, int z)
     return select(max(1.0f - fabs(u - (float)z) / REACH, (float16)0.0f), (float16)1.0f, u < 0.0f);
 }
 
-INLINE float16 weight(float16 near, float16 sharpness, float16 sharpest)
+INLINE float16 weight(float16 near, float16 sharpness, float16 sharpest, int squarings)
 {
-    const float16 share = min(sharpness / sharpest, (float16)1.0f); /* planes without nearness may be sharper */
-    const float16 share2 = share * share, share4 = share2 * share2, share8 = share4 * share4;
-    return near * share8 * share8;
+    float16 share = min(sharpness / sharpest, (float16)1.0f); /* planes without nearness may be sharper */
+    for (int i = 0; i < squarings; i++)
+        share *= share;
+    return near * share;
 }
 
-/* Work-items (16 cells, row). */
+/* The power is 2^squarings. Work-items (16 cells, row). */
 __kernel void weigh(__global const ushort *volume, __global const ushort *nearest, __global const float *positions,
-                    __global uchar *weights, Level level, int planes)
+                    __global uchar *weights, Level level, int planes, int squarings)
 {
     const int x = (int)get_global_id(0) * 16, y = (int)get_global_id(1);
     if (x >= level.width)
@@ -191,11 +201,11 @@ __kernel void weigh(__global const ushort *volume, __global const ushort *neares
     for (int z = at.first; z <= at.last; z++)
         sharpest = max(sharpest, select((float16)0.0f, SHARPNESS(z), nearness(at.u, z) > 0.0f));
     for (int z = at.first; z <= at.last; z++)
-        sum += weight(nearness(at.u, z), SHARPNESS(z), sharpest);
+        sum += weight(nearness(at.u, z), SHARPNESS(z), sharpest, squarings);
     for (int z = 0; z < planes; z++) {
         uchar16 share = 0;
         if (z >= at.first && z <= at.last)
-            share = convert_uchar16(weight(nearness(at.u, z), SHARPNESS(z), sharpest) * (255.0f / sum) + 0.5f);
+            share = convert_uchar16(weight(nearness(at.u, z), SHARPNESS(z), sharpest, squarings) * (255.0f / sum) + 0.5f);
         store_cells(weights + z * picture + cells, x, level.width, share);
     }
 }

@@ -88,7 +88,7 @@ void SharpBlend::blend(Pyramid &pyramid, const StackBuffer &stack, const cl::Buf
                    levels[l], pyramid.planes[l + 1], pyramid.result[l + 1], levels[l + 1], planes,
                    pyramid.result[l]);
     queue_.run(pyramid.blend_samples, levels[pyramid.first].blocks(), stack.bytes(), stack.layout(),
-               pyramid.first_row, pixels_of(pyramid.component), weights_.of_level(1), levels[1],
+               pyramid.first_row, pixels_of(pyramid.component), weights_.of_level(pyramid.first), levels[1],
                static_cast<cl_int>(pyramid.component.subsampling), pyramid.planes[first],
                pyramid.result[first], levels[first], planes, picture,
                cl_ulong2{{layout.offset, layout.stride}});

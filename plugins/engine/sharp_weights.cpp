@@ -4,6 +4,14 @@
 
 namespace dff {
 
+namespace {
+
+/* sharp_weights.cl */
+constexpr cl_int squarings_of_bands = 5, squarings_of_finest = 6;
+constexpr cl_int2 along_row{{1, 0}}, along_column{{0, 1}};
+
+} // namespace
+
 PyramidShape::PyramidShape(uint32_t width, uint32_t height)
 {
     constexpr cl_int side = 16; /* SIDE */
@@ -25,6 +33,7 @@ SharpWeights::SharpWeights(CommandQueue &queue, const StackShape &shape, const P
     measure_ = program.kernel("sharpness");
     greatest_of_four_ = program.kernel("greatest_of_four");
     least_of_four_ = program.kernel("least_of_four");
+    greatest_of_three_ = program.kernel("greatest_of_three");
     greatest_of_five_ = program.kernel("greatest_of_five");
     soften_ = program.kernel("soften");
     nearest_of_pixels_ = program.kernel("nearest_of_pixels");
@@ -35,6 +44,7 @@ SharpWeights::SharpWeights(CommandQueue &queue, const StackShape &shape, const P
         nearest_[l] = queue.allocate(cells * sizeof(cl_ushort));
         weights_[l] = queue.allocate(cells * shape.planes);
     }
+    weights_[0] = queue.allocate(pyramid_.levels[1].cells() * shape.planes);
     for (cl::Buffer &volume : spread_)
         volume = queue.allocate(pyramid_.levels[1].cells() * shape.planes * sizeof(cl_ushort));
     set_encoder(encoder);
@@ -69,22 +79,21 @@ void SharpWeights::run(const StackBuffer &stack, const cl::Buffer &depth, size_t
     }
 
     queue_.begin_stage("weights");
-    for (size_t l = 1; l < weights_.size(); l++) {
-        spread(l);
-        queue_.run(weigh_, levels[l].blocks(), spread_[1], nearest_[l], positions_, weights_[l], levels[l],
-                   static_cast<cl_int>(planes));
-    }
+    weigh(0, 1, greatest_of_three_, squarings_of_finest);
+    for (size_t l = 1; l < weights_.size(); l++)
+        weigh(l, l, greatest_of_five_, squarings_of_bands);
 }
 
-void SharpWeights::spread(size_t l)
+void SharpWeights::weigh(size_t band, size_t l, cl::Kernel &dilate, cl_int squarings)
 {
-    constexpr cl_int2 along_row{{1, 0}}, along_column{{0, 1}};
     const PyramidShape::Level &level = pyramid_.levels[l];
     const cl::NDRange blocks = level.blocks(shape_.planes);
-    queue_.run(greatest_of_five_, blocks, sharpness_[l], spread_[0], level, along_row);
-    queue_.run(greatest_of_five_, blocks, spread_[0], spread_[1], level, along_column);
+    queue_.run(dilate, blocks, sharpness_[l], spread_[0], level, along_row);
+    queue_.run(dilate, blocks, spread_[0], spread_[1], level, along_column);
     queue_.run(soften_, blocks, spread_[1], spread_[0], level, along_row);
     queue_.run(soften_, blocks, spread_[0], spread_[1], level, along_column);
+    queue_.run(weigh_, level.blocks(), spread_[1], nearest_[l], positions_, weights_[band], level,
+               static_cast<cl_int>(shape_.planes), squarings);
 }
 
 } // namespace dff

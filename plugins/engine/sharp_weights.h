@@ -41,21 +41,21 @@ public:
     /* `depth_stride` is in pixels. */
     void run(const StackBuffer &stack, const cl::Buffer &depth, size_t depth_stride);
 
-    /* Of level 1 and more: a volume of bytes. */
+    /* A volume of bytes: of the band of level 1 and more; at 0, in cells of level 1, of the finest band. */
     const cl::Buffer &of_level(size_t level) const { return weights_[level]; }
 
 private:
-    /* One buffer a level, none at level 0. */
+    /* One buffer a level; of level 0 there are weights alone. */
     using Buffers = std::array<cl::Buffer, PyramidShape::top + 1>;
 
-    void spread(size_t level);
+    void weigh(size_t band, size_t level, cl::Kernel &dilate, cl_int squarings);
 
     CommandQueue &queue_;
     StackShape shape_;
     PyramidShape pyramid_;
     Luma luma_;
-    cl::Kernel measure_, greatest_of_four_, least_of_four_, greatest_of_five_, soften_, nearest_of_pixels_,
-        weigh_;
+    cl::Kernel measure_, greatest_of_four_, least_of_four_, greatest_of_three_, greatest_of_five_, soften_,
+        nearest_of_pixels_, weigh_;
     Buffers sharpness_, nearest_, weights_;
     std::array<cl::Buffer, 2> spread_; /* of the level at work */
     cl::Buffer positions_;

@@ -13,7 +13,7 @@ namespace dff::twin {
 namespace {
 
 constexpr int top_level = 5;
-constexpr double reach = 2.0, floor_dn = 0.1;
+constexpr double reach = 2.5, floor_dn = 0.1;
 
 /* A picture beyond whose borders stand its borders. */
 class Picture {
@@ -61,21 +61,25 @@ double gradient(const Picture &luma, int x, int y)
     return std::max(std::abs(dx), std::abs(dy)) + 0.375 * std::min(std::abs(dx), std::abs(dy));
 }
 
-Picture spread(const Picture &sharpness)
+Picture dilated(const Picture &sharpness, int radius)
 {
-    constexpr double binomial[5] = {1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
-    const Picture greatest = sharpness.like([&](int x, int y) {
+    return sharpness.like([&](int x, int y) {
         double most = 0.0;
-        for (int j = -2; j <= 2; j++)
-            for (int i = -2; i <= 2; i++)
+        for (int j = -radius; j <= radius; j++)
+            for (int i = -radius; i <= radius; i++)
                 most = std::max(most, sharpness.at(x + i, y + j));
         return most;
     });
-    return greatest.like([&](int x, int y) {
+}
+
+Picture softened(const Picture &sharpness)
+{
+    constexpr double binomial[5] = {1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16};
+    return sharpness.like([&](int x, int y) {
         double sum = 0.0;
         for (int j = -2; j <= 2; j++)
             for (int i = -2; i <= 2; i++)
-                sum += binomial[i + 2] * binomial[j + 2] * greatest.at(x + i, y + j);
+                sum += binomial[i + 2] * binomial[j + 2] * sharpness.at(x + i, y + j);
         return sum;
     });
 }
@@ -91,7 +95,7 @@ double nearest_of(const Picture &positions, int x, int y)
 }
 
 /* Weights of one cell in all planes, in whole parts of 255. */
-std::vector<double> weights_at(const Planes &sharpness, double u, int x, int y)
+std::vector<double> weights_at(const Planes &sharpness, double u, double power, int x, int y)
 {
     std::vector<double> weights;
     const auto near = [&](size_t z) {
@@ -103,7 +107,7 @@ std::vector<double> weights_at(const Planes &sharpness, double u, int x, int y)
             sharpest = std::max(sharpest, sharpness[z].at(x, y) + floor_dn);
     for (size_t z = 0; z < sharpness.size(); z++) {
         const double share = std::min((sharpness[z].at(x, y) + floor_dn) / sharpest, 1.0);
-        weights.push_back(near(z) * std::pow(share, 16.0));
+        weights.push_back(near(z) * std::pow(share, power));
         sum += weights.back();
     }
     for (double &weight : weights)
@@ -111,7 +115,23 @@ std::vector<double> weights_at(const Planes &sharpness, double u, int x, int y)
     return weights;
 }
 
-/* Weights of every plane at the levels from 1 on. */
+/* Weights of every plane, by the sharpness as many cells around. */
+Planes band_weights(const Planes &sharpness, const Picture &u, int radius, double power)
+{
+    Planes around;
+    for (const Picture &f : sharpness)
+        around.push_back(softened(dilated(f, radius)));
+    std::vector<std::vector<double>> cells;
+    for (int y = 0; y < u.height(); y++)
+        for (int x = 0; x < u.width(); x++)
+            cells.push_back(weights_at(around, u.at(x, y), power, x, y));
+    Planes result;
+    for (size_t z = 0; z < sharpness.size(); z++)
+        result.push_back(u.like([&](int x, int y) { return cells[y * u.width() + x][z]; }));
+    return result;
+}
+
+/* Weights of every band; those of the finest one lie in cells of level 1. */
 std::vector<Planes> weights(const Volume &luma, const std::vector<double> &positions)
 {
     const int width = static_cast<int>(luma.width), height = static_cast<int>(luma.height);
@@ -127,18 +147,9 @@ std::vector<Planes> weights(const Volume &luma, const std::vector<double> &posit
     const Picture pixels(width, height, [&](int x, int y) { return positions[y * width + x]; });
     Picture u = pixels.half([&](int x, int y) { return nearest_of(pixels, x, y); });
 
-    std::vector<Planes> result(1);
+    std::vector<Planes> result{band_weights(sharpness, u, 1, 64.0)};
     for (int level = 1; level <= top_level; level++) {
-        Planes around, of_level(luma.planes, u);
-        for (const Picture &f : sharpness)
-            around.push_back(spread(f));
-        std::vector<std::vector<double>> cells;
-        for (int y = 0; y < u.height(); y++)
-            for (int x = 0; x < u.width(); x++)
-                cells.push_back(weights_at(around, u.at(x, y), x, y));
-        for (unsigned z = 0; z < luma.planes; z++)
-            of_level[z] = u.like([&](int x, int y) { return cells[y * u.width() + x][z]; });
-        result.push_back(of_level);
+        result.push_back(band_weights(sharpness, u, 2, 32.0));
         u = u.half([&](int x, int y) { return nearest_of(u, x, y); });
         for (Picture &f : sharpness)
             f = f.half([&](int x, int y) {
@@ -186,7 +197,7 @@ Picture blend(const Planes &planes, const std::vector<Planes> &weights, int firs
             double sum = 0.0, total = 0.0;
             for (size_t z = 0; z < planes.size(); z++) {
                 const double weight =
-                    level == 0 ? upsampled(weights[1][z], x, y) : weights[level][z].at(x, y);
+                    level == 0 ? upsampled(weights[0][z], x, y) : weights[level][z].at(x, y);
                 const double below = level == top_level ? 0.0 : upsampled(levels[level + 1][z], x, y);
                 sum += weight * (levels[level][z].at(x, y) - below);
                 total += weight;
