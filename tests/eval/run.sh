@@ -18,7 +18,7 @@ make_python() {
     [ ! -e "$folder/venv/ready" ] || return 0
     say "Making a Python environment in $folder/venv"
     python3 -m venv "$folder/venv"
-    "$python" -m pip install --quiet --disable-pip-version-check numpy opencv-python-headless scikit-image
+    "$python" -m pip install --quiet --disable-pip-version-check numpy opencv-python-headless scikit-image scipy
     touch "$folder/venv/ready"
 }
 

@@ -35,14 +35,17 @@ class FileScene(Simulated):
 
     def __init__(self, folder):
         self.folder, self.name = folder, folder.name
-        self.view = cv2.imread(str(folder / 'view.png'))
-        self.size = self.view.shape[1::-1]
+        self.sharp = cv2.imread(str(folder / 'view.png'))
+        self.size = self.sharp.shape[1::-1]
         self.content = f'scene=files image="{folder}/view.png" depth-map="{folder}/disp.png" seed=1'
 
+    def truth(self):
+        """Plane positions, and where they are known."""
+        return scores.true_depth(cv2.imread(str(self.folder / 'disp.png'), cv2.IMREAD_UNCHANGED), PLANES)
+
     def score(self, result, _):
-        truth, known = scores.true_depth(cv2.imread(str(self.folder / 'disp.png'), cv2.IMREAD_UNCHANGED), PLANES)
-        return {**scores.depth_scores(result.u, truth, known, PLANES),
-                **scores.all_in_focus_scores(result.picture, self.view)}
+        return {**scores.depth_scores(result.u, *self.truth(), PLANES),
+                **scores.all_in_focus_scores(result.picture, self.sharp)}
 
 
 class MadeScene(Simulated):

@@ -11,6 +11,7 @@ import numpy as np
 
 import evaluate
 import halo
+import peers
 import scenes
 import scores
 
@@ -122,6 +123,19 @@ class PicturesOfPlanes(unittest.TestCase):
         blurred = scores.halo_scores(planes[4], sharp, planes)
         self.assertGreater(blurred['below_best'], 1)
         self.assertGreater(blurred['halo'], 0.3)
+
+
+class Peers(unittest.TestCase):
+    def test_other_ways_find_which_half_is_sharp(self):
+        texture = np.random.default_rng(5).integers(0, 256, (96, 128)).astype(np.float32)
+        left = np.arange(128)[None] < 64
+        planes = np.stack([np.where(left, cv2.GaussianBlur(texture, (0, 0), 1 + abs(z - 1)),
+                                    cv2.GaussianBlur(texture, (0, 0), 1 + abs(z - 3))) for z in range(5)])
+        for name, depth in peers.DEPTH.items():
+            found = depth(planes.astype(np.uint8))
+            with self.subTest(name):
+                self.assertAlmostEqual(np.median(found[:, :48]), 1, delta=0.6)
+                self.assertAlmostEqual(np.median(found[:, 80:]), 3, delta=0.6)
 
 
 class Elements(unittest.TestCase):
