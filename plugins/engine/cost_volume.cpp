@@ -26,9 +26,9 @@ cl_int CostVolume::guess_spacing(cl_int width)
 CostVolume::CostVolume(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), medians_(queue.allocate(2 * sizeof(cl_float))),
       coarse_medians_(queue.allocate(2 * sizeof(cl_float))), largest_range_(queue.allocate(sizeof(cl_float))),
-      largest_coarse_range_(queue.allocate(sizeof(cl_float))), cost_(low.allocate_shorts(queue, low.planes)),
-      guess_(low.allocate_shorts(queue, 1)), coarse_(low.allocate_shorts(queue, low.planes)),
-      wide_(low.allocate_shorts(queue, low.planes)),
+      largest_coarse_range_(queue.allocate(sizeof(cl_float))), leak_(queue, low),
+      cost_(low.allocate_shorts(queue, low.planes)), guess_(low.allocate_shorts(queue, 1)),
+      coarse_(low.allocate_shorts(queue, low.planes)), wide_(low.allocate_shorts(queue, low.planes)),
       coarse_scratch_(low.allocate_rows(queue, coarse_rows(low), sizeof(cl_ushort)))
 {
     const Program program(queue.device(), "cost_volume");
@@ -48,10 +48,11 @@ uint64_t CostVolume::scratch_bytes(const LowShape &low)
     return static_cast<uint64_t>(low.stride) * coarse_rows(low) * sizeof(cl_ushort);
 }
 
-void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise)
+void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise,
+                     float blur_step)
 {
     run_fine(focus, noise);
-    run_coarse(small, noise);
+    run_coarse(small, noise, blur_step);
     run_guess(noise);
 }
 
@@ -66,17 +67,27 @@ void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
                low_.width, low_.stride);
 }
 
-void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise)
+void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step)
 {
     queue_.begin_stage("coarse-cost");
     queue_.run(coarse_focus_, low_.strips_of(low_.planes), small.colours(), coarse_, coarse_scratch_,
                low_.width, low_.height, low_.stride, low_.strip);
+    summarise_coarse(noise);
+    if (FocusLeak::is_needed(blur_step)) {
+        leak_.run(coarse_, coarse_medians_, noise, blur_step);
+        queue_.begin_stage("coarse-cost");
+        summarise_coarse(noise);
+    }
+    queue_.run(add_coarse_cost_, low_.rows_of_planes(), coarse_, coarse_top_, range_, coarse_range_, medians_,
+               coarse_medians_, noise.noise(), cost_, low_.width, low_.stride);
+}
+
+void CostVolume::summarise_coarse(const NoiseEstimate &noise)
+{
     queue_.run(find_evidence_, low_.rows(), coarse_, noise.noise(), coarse_top_, coarse_range_, low_.width,
                low_.stride, low_.planes);
     queue_.run(summarise_, {1, 2}, coarse_top_, coarse_range_, coarse_medians_, largest_coarse_range_,
                low_.width, low_.height, low_.stride);
-    queue_.run(add_coarse_cost_, low_.rows_of_planes(), coarse_, coarse_top_, range_, coarse_range_, medians_,
-               coarse_medians_, noise.noise(), cost_, low_.width, low_.stride);
 }
 
 void CostVolume::run_guess(const NoiseEstimate &noise)

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/focus_leak.h"
 #include "engine/focus_volume.h"
 #include "engine/small_planes.h"
 
@@ -15,7 +16,8 @@ public:
     /* Of device memory, beside pictures. */
     static uint64_t scratch_bytes(const LowShape &low);
 
-    void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise);
+    /* blur_step: pixels a plane. */
+    void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
 
     /* Low pictures short, their sides mirrored. */
     const cl::Buffer &cost() const { return cost_; }         /* [z]: C */
@@ -30,7 +32,7 @@ public:
 
     /* The parts of run(). C is C0 after the first. */
     void run_fine(const FocusVolume &focus, const NoiseEstimate &noise);
-    void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise);
+    void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
     void run_guess(const NoiseEstimate &noise);
 
     /* Cells between the values of F1 that F2 is the mean of: blur reaches as far as a part of the picture's
@@ -38,12 +40,15 @@ public:
     static cl_int guess_spacing(cl_int width);
 
 private:
+    void summarise_coarse(const NoiseEstimate &noise);
+
     CommandQueue &queue_;
     LowShape low_;
     cl::Kernel find_evidence_, summarise_, fine_cost_, coarse_focus_, add_coarse_cost_, widen_focus_,
         first_guess_;
     cl::Buffer top_, range_, coarse_top_, coarse_range_, medians_, coarse_medians_, largest_range_,
         largest_coarse_range_, wide_top_, wide_range_;
+    FocusLeak leak_;
     cl::Buffer cost_, guess_, coarse_, wide_, coarse_scratch_;
 };
 

@@ -9,11 +9,11 @@ namespace dff {
 namespace {
 
 constexpr int iterations = 2;
-constexpr double lambda = 100.0;
 
 /* Of Min et al. 2014: falls by four each time, all together lambda. */
-cl_float lambda_of(int iteration)
+cl_float lambda_of(int iteration, float t)
 {
+    const double lambda = 100.0 * (1.0 + 2.0 * t);
     return static_cast<cl_float>(1.5 * lambda * std::pow(4.0, iterations - 1 - iteration) /
                                  (std::pow(4.0, iterations) - 1.0));
 }
@@ -32,7 +32,7 @@ DepthFill::DepthFill(CommandQueue &queue, const LowShape &low)
     quantile_ = Program(queue.device(), "cost_volume").kernel("quantile");
 }
 
-void DepthFill::run(const SemiGlobalMatching &matching)
+void DepthFill::run(const SemiGlobalMatching &matching, float t)
 {
     queue_.begin_stage("fill");
     queue_.run(quantile_, {1}, matching.confidence(), high_confidence_, 0.9f, 255.0f, low_.width, low_.height,
@@ -40,9 +40,9 @@ void DepthFill::run(const SemiGlobalMatching &matching)
     queue_.run(weigh_, low_.rows(), matching.u(), matching.confidence(), pair_, low_.width, low_.stride);
     for (int i = 0; i < iterations; i++) {
         queue_.run(smooth_columns_, {1, static_cast<size_t>(low_.width + 15) / 16}, pair_, matching.edges(),
-                   scratch_, lambda_of(i), low_.height, low_.stride);
+                   scratch_, lambda_of(i, t), low_.height, low_.stride);
         queue_.run(smooth_rows_, {1, static_cast<size_t>(low_.height + 7) / 8}, pair_, matching.edges(),
-                   scratch_, lambda_of(i), low_.width, low_.height, low_.stride);
+                   scratch_, lambda_of(i, t), low_.width, low_.height, low_.stride);
     }
     queue_.run(fill_, low_.rows(), pair_, matching.confidence(), high_confidence_, matching.u(), low_.width,
                low_.stride);

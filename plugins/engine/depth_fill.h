@@ -12,8 +12,8 @@ class DepthFill {
 public:
     DepthFill(CommandQueue &queue, const LowShape &low);
 
-    /* Changes matching.u() in place and mirrors its sides. */
-    void run(const SemiGlobalMatching &matching);
+    /* Changes matching.u() in place and mirrors its sides. t: of the noise, in which it reaches farther. */
+    void run(const SemiGlobalMatching &matching, float t);
 
     /* float: the 90th percentile of the confidence. */
     const cl::Buffer &high_confidence() const { return high_confidence_; }

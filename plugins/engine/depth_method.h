@@ -27,6 +27,10 @@ public:
     virtual const cl::Buffer &confidence() const = 0; /* uchar: 255 c */
     virtual const cl::Buffer &motion() const = 0;     /* uchar: 255 where it moved */
 
+    /* By how many pixels the circle of confusion grows from plane to plane in the last stack; 0 where that is
+     * not known. */
+    virtual float blur_step() const { return 0.0f; }
+
     /* float: the residual the solver left, in parts of the right-hand side; nullptr where that is not known.
      */
     virtual const cl::Buffer *residual() const { return nullptr; }

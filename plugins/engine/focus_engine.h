@@ -49,6 +49,10 @@ public:
      * tells. */
     std::optional<float> residual() const { return residual_; }
 
+    /* By how many pixels the circle of confusion grew from plane to plane in the last stack; 0 where the
+     * method does not tell. */
+    float blur_step() const { return method_->blur_step(); }
+
 private:
     cl::Buffer depth_for(const OutputPicture &output);
     void read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output);

@@ -13,6 +13,15 @@ namespace {
 /* 4 at Full HD, 2 near VGA. */
 constexpr uint64_t pixels_for_scale_4 = 800 * 600 + 1;
 
+/* Pixels of blur a plane above which cells of 2 pixels see too little change, and below which those of 4 see
+ * too little detail: apart, so that a stream does not go to and fro. */
+constexpr float step_for_scale_4 = 6.5f, step_for_scale_2 = 4.5f;
+
+bool is_large(const StackShape &shape)
+{
+    return uint64_t{shape.width} * shape.height >= pixels_for_scale_4;
+}
+
 unsigned choose_scale(const StackShape &shape, unsigned wish)
 {
     if (wish != 0 && wish != 2 && wish != 4 && wish != 8)
@@ -20,7 +29,7 @@ unsigned choose_scale(const StackShape &shape, unsigned wish)
                           "The volume's scale can be 2, 4, 8 or 0 (by size), not " + std::to_string(wish));
     if (wish != 0)
         return wish;
-    return uint64_t{shape.width} * shape.height < pixels_for_scale_4 ? 2 : 4;
+    return is_large(shape) ? 4 : 2;
 }
 
 /* Whole cache lines, and an odd number of them, so that cells above each other share no cache set. */
@@ -45,6 +54,22 @@ LowShape::LowShape(const StackShape &shape, unsigned wish)
       height(static_cast<cl_int>(shape.height) / scale), stride(stride_for(width)),
       planes(static_cast<cl_int>(shape.planes)), strip(strip_for(height))
 {
+}
+
+unsigned LowShape::scale_for(const StackShape &shape, float blur_step, cl_int now)
+{
+    return is_large(shape) || blur_step > (now == 4 ? step_for_scale_2 : step_for_scale_4) ? 4 : 2;
+}
+
+LowShape LowShape::halved() const
+{
+    LowShape half = *this;
+    half.scale = 2 * scale;
+    half.width = width / 2;
+    half.height = height / 2;
+    half.stride = stride_for(half.width);
+    half.strip = strip_for(half.height);
+    return half;
 }
 
 cl::Buffer LowShape::allocate(CommandQueue &queue, size_t pictures) const

@@ -13,6 +13,12 @@ struct LowShape {
     /* `scale` as of DepthParameters. Throws EngineError (Failed) if it is none of 0, 2, 4, 8. */
     LowShape(const StackShape &shape, unsigned scale);
 
+    /* The scale by size and blur, where it is `now`. */
+    static unsigned scale_for(const StackShape &shape, float blur_step, cl_int now);
+
+    /* Of pictures at half this resolution. */
+    LowShape halved() const;
+
     static constexpr cl_int side = 16; /* SIDE of low_picture.cl */
 
     cl_int scale;

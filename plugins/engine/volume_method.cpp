@@ -4,12 +4,48 @@
 
 namespace dff {
 
+/* All of one scale. */
+struct VolumeMethod::Stages {
+    Stages(CommandQueue &queue, const StackShape &shape, unsigned scale)
+        : low(shape, scale), noise(queue, shape, low.scale), small(queue, shape, low),
+          focus(queue, shape, low), pyramid(queue, low), blur_step(queue, pyramid), cost(queue, low),
+          guide(queue, low), filter(queue, low), matching(queue, low), doubt(queue, low),
+          sub_plane(queue, low), fill(queue, low), upsampling(queue, shape, low)
+    {
+    }
+
+    LowShape low;
+    NoiseEstimate noise;
+    SmallPlanes small;
+    FocusVolume focus;
+    FocusPyramid pyramid;
+    BlurStep blur_step;
+    CostVolume cost;
+    GuideImage guide;
+    GuidedFilter filter;
+    SemiGlobalMatching matching;
+    OcclusionDoubt doubt;
+    SubPlane sub_plane;
+    DepthFill fill;
+    JointUpsampling upsampling;
+};
+
 VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters)
-    : queue_(queue), shape_(shape), parameters_(parameters), low_(shape, parameters.scale),
-      noise_(queue, shape, low_.scale), small_(queue, shape, low_), focus_(queue, shape, low_),
-      cost_(queue, low_), guide_(queue, low_), filter_(queue, low_), matching_(queue, low_),
-      fill_(queue, low_), upsampling_(queue, shape, low_)
+    : queue_(queue), shape_(shape), parameters_(parameters),
+      stages_(std::make_unique<Stages>(queue, shape, parameters.scale))
 {
+}
+
+VolumeMethod::~VolumeMethod() = default;
+
+const cl::Buffer &VolumeMethod::sparse() const
+{
+    return stages_->upsampling.sparse();
+}
+
+const cl::Buffer &VolumeMethod::confidence() const
+{
+    return stages_->upsampling.confidence();
 }
 
 uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &parameters)
@@ -17,37 +53,57 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 11 * planes + 5 + 2 * 28; /* of shorts; one of floats is two */
+    const uint64_t pictures = 14 * planes + 9 + 2 * 32; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const bool is_interleaved_or_16 =
         shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;
     const uint64_t motion = pixels * (is_interleaved_or_16 ? planes + 1 : 1);
     return low.height * row * pictures + CostVolume::scratch_bytes(low) + GuidedFilter::scratch_bytes(low) +
-           FocusVolume::scratch_bytes(shape, low) + pixels * (2 * sizeof(cl_ushort) + 1) + motion;
+           FocusVolume::scratch_bytes(shape, low) + FocusPyramid::memory(low) +
+           pixels * (2 * sizeof(cl_ushort) + 1) + motion;
+}
+
+void VolumeMethod::measure(const StackBuffer &stack)
+{
+    Stages &s = *stages_;
+    s.noise.run(stack);
+    s.small.run(stack);
+    s.focus.run(stack, s.noise);
+    s.pyramid.run(s.small, s.noise, stack);
+    blur_ = s.blur_step.read(s.focus, s.pyramid, s.noise, blur_);
 }
 
 void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
                        const cl::Buffer &depth)
 {
-    noise_.run(stack);
-    small_.run(stack);
-    focus_.run(stack, noise_);
-    cost_.run(focus_, small_, noise_);
-    guide_.run(cost_, small_, noise_);
-    filter_.run(cost_.cost(), guide_.guide(), noise_);
-    filter_.doubt(guide_.nearer(), noise_);
-    matching_.run(filter_.filtered(), guide_.guide(), noise_);
-    fill_.run(matching_);
-    guide_.run_at(matching_.u(), small_, noise_);
-    upsampling_.run(matching_.u(), guide_, cost_, noise_, stack, coder, depth);
+    measure(stack);
+    const auto now = stages_->low.scale;
+    const unsigned scale =
+        parameters_.scale == 0 ? LowShape::scale_for(shape_, blur_.step, now) : parameters_.scale;
+    if (static_cast<cl_int>(scale) != now) {
+        stages_.reset();
+        stages_ = std::make_unique<Stages>(queue_, shape_, scale);
+        measure(stack.as_new());
+    }
+    Stages &s = *stages_;
+    s.cost.run(s.focus, s.small, s.noise, blur_.step);
+    s.guide.run(s.cost, s.small, s.noise);
+    s.filter.run(s.cost.cost(), s.guide.guide(), s.noise);
+    s.filter.doubt(s.guide.nearer(), s.noise);
+    s.matching.run(s.filter.filtered(), s.guide.guide(), s.noise);
+    s.doubt.run(s.matching, s.filter.filtered(), s.noise, blur_.step);
+    s.sub_plane.run(s.matching.u(), s.focus, s.pyramid, s.noise, blur_.step);
+    s.fill.run(s.matching, blur_.t);
+    s.guide.run_at(s.matching.u(), s.small, s.noise);
+    s.upsampling.run(s.matching.u(), s.guide, s.cost, s.noise, stack, coder, depth);
 
     const bool mask_motion = wanted.sparse && parameters_.motion_mask;
     if (wanted.motion || mask_motion)
         run_motion(stack);
     if (wanted.confidence || wanted.sparse)
-        upsampling_.run_confidence(matching_, cost_);
+        s.upsampling.run_confidence(s.matching, s.cost);
     if (wanted.sparse)
-        upsampling_.run_sparse(depth, fill_, mask_motion ? entropy_.get() : nullptr);
+        s.upsampling.run_sparse(depth, s.fill, mask_motion ? entropy_.get() : nullptr);
 }
 
 void VolumeMethod::run_motion(const StackBuffer &stack)

@@ -2,10 +2,13 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/blur_step.h"
 #include "engine/depth_method.h"
 #include "engine/depth_parameters.h"
 #include "engine/guided_filter.h"
 #include "engine/joint_upsampling.h"
+#include "engine/occlusion_doubt.h"
+#include "engine/sub_plane.h"
 
 namespace dff {
 
@@ -14,33 +17,31 @@ namespace dff {
 class VolumeMethod : public DepthMethod {
 public:
     VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters);
+    ~VolumeMethod() override;
 
     /* Bytes of device memory it takes beside the stack, with all maps wanted. */
     static uint64_t memory(const StackShape &shape, const DepthParameters &parameters);
 
+    /* Waits for the device once, to learn the blur step that the stages after it go by. */
     void run(const StackBuffer &stack, DepthCoder &coder, const Wanted &wanted,
              const cl::Buffer &depth) override;
 
-    const cl::Buffer &sparse() const override { return upsampling_.sparse(); }
-    const cl::Buffer &confidence() const override { return upsampling_.confidence(); }
+    const cl::Buffer &sparse() const override;
+    const cl::Buffer &confidence() const override;
     const cl::Buffer &motion() const override { return entropy_->moved(); }
+    float blur_step() const override { return blur_.step; }
 
 private:
+    struct Stages;
+
+    void measure(const StackBuffer &stack);
     void run_motion(const StackBuffer &stack);
 
     CommandQueue &queue_;
     StackShape shape_;
     DepthParameters parameters_;
-    LowShape low_;
-    NoiseEstimate noise_;
-    SmallPlanes small_;
-    FocusVolume focus_;
-    CostVolume cost_;
-    GuideImage guide_;
-    GuidedFilter filter_;
-    SemiGlobalMatching matching_;
-    DepthFill fill_;
-    JointUpsampling upsampling_;
+    std::unique_ptr<Stages> stages_; /* at one scale */
+    BlurStep::Blur blur_;            /* of the last stack */
     std::unique_ptr<Luma> luma_;
     std::unique_ptr<ZEntropy> entropy_;
 };

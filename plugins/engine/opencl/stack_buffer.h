@@ -27,6 +27,14 @@ public:
     /* Bit z is set where plane z is another than in the stack of the last remember(). */
     uint64_t changed_planes() const { return changed_planes_; }
 
+    /* The same for whoever has seen none of its planes. */
+    StackBuffer as_new() const
+    {
+        StackBuffer all = *this;
+        all.changed_planes_ = ~uint64_t{0};
+        return all;
+    }
+
     /* All that was asked of the stack in `view`, the last one assigned, has been computed. */
     void remember(const StackView &view) { tracker_.remember(view); }
 

@@ -2,8 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * Each kernel of method=volume against its twin, fed with what the device's stage before it gave. */
+#include "engine/blur_step.h"
 #include "engine/guided_filter.h"
 #include "engine/joint_upsampling.h"
+#include "engine/occlusion_doubt.h"
+#include "engine/sub_plane.h"
 #include "twin_volume.h"
 
 #include <cmath>
@@ -33,6 +36,9 @@ TestStack silent_stack(const StackShape &shape)
     return stack;
 }
 
+/* Pixels of blur a plane: of planes that lie close, and of those that do not. */
+constexpr float close_planes = 2.0f, far_planes = 9.0f;
+
 struct Case {
     PixelFormat format;
     unsigned width, height, planes, scale;
@@ -46,8 +52,9 @@ protected:
           stack(GetParam().silent ? silent_stack(shape) : TestStack(shape)), queue(Device::open("")),
           buffer(queue, shape), low(shape, GetParam().scale), coder(queue, shape),
           noise_stage(queue, shape, low.scale), small_stage(queue, shape, low),
-          focus_stage(queue, shape, low), cost_stage(queue, low), guide_stage(queue, low),
-          filter_stage(queue, low), matching(queue, low), fill_stage(queue, low),
+          focus_stage(queue, shape, low), pyramid(queue, low), blur_stage(queue, pyramid),
+          cost_stage(queue, low), guide_stage(queue, low), filter_stage(queue, low), matching(queue, low),
+          doubt_stage(queue, low), sub_plane_stage(queue, low), fill_stage(queue, low),
           upsampling(queue, shape, low),
           depth_map(queue.allocate(size_t{shape.width} * shape.height * sizeof(uint16_t)))
     {
@@ -55,6 +62,7 @@ protected:
         noise_stage.run(buffer);
         small_stage.run(buffer);
         focus_stage.run(buffer, noise_stage);
+        pyramid.run(small_stage, noise_stage, buffer);
         noise = read_back<twin::Noise>(queue, noise_stage.noise(), 1)[0];
     }
 
@@ -125,14 +133,22 @@ protected:
     /* Runs everything up to the matching. */
     void run_to_matching()
     {
-        cost_stage.run(focus_stage, small_stage, noise_stage);
+        cost_stage.run(focus_stage, small_stage, noise_stage, close_planes);
         guide_stage.run(cost_stage, small_stage, noise_stage);
         filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
         filter_stage.doubt(guide_stage.nearer(), noise_stage);
         matching.run(filter_stage.filtered(), guide_stage.guide(), noise_stage);
     }
 
+    /* What `shape` says of them, read as the pictures of a level. */
+    Volume read_level(const cl::Buffer &buffer_on_device, const LowShape &level, float one);
+
     void expect_noise_as_made();
+    void expect_pyramid();
+    void expect_falls();
+    void expect_no_leak();
+    void expect_occlusion_doubt();
+    void expect_sub_plane();
     void expect_small_planes_and_focus_volume();
     void expect_cost_volume();
     void expect_guide_image();
@@ -150,10 +166,14 @@ protected:
     NoiseEstimate noise_stage;
     SmallPlanes small_stage;
     FocusVolume focus_stage;
+    FocusPyramid pyramid;
+    BlurStep blur_stage;
     CostVolume cost_stage;
     GuideImage guide_stage;
     GuidedFilter filter_stage;
     SemiGlobalMatching matching;
+    OcclusionDoubt doubt_stage;
+    SubPlane sub_plane_stage;
     DepthFill fill_stage;
     JointUpsampling upsampling;
     cl::Buffer depth_map;
@@ -177,6 +197,97 @@ TEST_P(VolumeStages, decision_agrees_with_its_twins)
     expect_fill_and_upsampling();
     expect_confidence_and_sparse_depth();
     expect_doubt();
+}
+
+TEST_P(VolumeStages, what_follows_the_blur_agrees_with_its_twins)
+{
+    expect_pyramid();
+    expect_falls();
+    expect_no_leak();
+    run_to_matching();
+    expect_occlusion_doubt();
+    expect_sub_plane();
+}
+
+Volume VolumeStages::read_level(const cl::Buffer &buffer_on_device, const LowShape &level, float one)
+{
+    const LowShape finest = low;
+    low = level;
+    Volume found = read_shorts(buffer_on_device, shape.planes, one);
+    low = finest;
+    return found;
+}
+
+void VolumeStages::expect_pyramid()
+{
+    Volume luma = twin::mean_of_small(read_small());
+    for (const FocusPyramid::Level &level : pyramid.levels()) {
+        const Volume found = read_level(level.luma, level.shape, 16);
+        expect_alike(found, luma, 0.2f);
+        expect_alike(read_level(level.focus, level.shape, 32), twin::focus_on_scale(found, noise.t), 0.7f);
+        luma = twin::average_squares(found, 2);
+    }
+}
+
+void VolumeStages::expect_falls()
+{
+    const BlurStep::Blur blur = blur_stage.read(focus_stage, pyramid, noise_stage, {});
+    EXPECT_FLOAT_EQ(blur.t, noise.t);
+    const std::vector<BlurStep::Fall> &falls = blur_stage.falls();
+    ASSERT_EQ(falls.size(), pyramid.levels().size() + 1);
+    EXPECT_NEAR(falls[0].rho, twin::fall_beside_peaks(read_shorts(focus_stage.volume(), shape.planes, 32)),
+                0.06f);
+    for (size_t i = 1; i < falls.size(); i++) {
+        const FocusPyramid::Level &level = pyramid.levels()[i - 1];
+        EXPECT_EQ(falls[i].scale, static_cast<float>(level.shape.scale));
+        EXPECT_NEAR(falls[i].rho, twin::fall_beside_peaks(read_level(level.focus, level.shape, 32)), 0.06f);
+    }
+}
+
+void VolumeStages::expect_no_leak()
+{
+    cost_stage.run_fine(focus_stage, noise_stage);
+    cost_stage.run_coarse(small_stage, noise_stage, close_planes);
+    const Volume focus = read_shorts(cost_stage.coarse_focus(), shape.planes, 32);
+    const Volume smooth = twin::smooth_along_z(focus, noise.t);
+    const float middle =
+        twin::median(twin::top_of(smooth).values) - 0.5f * twin::median(twin::range_of(smooth).values);
+    cost_stage.run_coarse(small_stage, noise_stage, far_planes);
+    expect_alike(read_shorts(cost_stage.coarse_focus(), shape.planes, 32),
+                 twin::without_leak(focus, middle, far_planes, low.scale, noise.t), 0.3f);
+}
+
+/* Of steps in depth, since what is decided has none here. */
+void VolumeStages::expect_occlusion_doubt()
+{
+    std::vector<float> cells(size_t{1} * low.height * low.stride);
+    for (size_t i = 0; i < cells.size(); i++)
+        cells[i] =
+            static_cast<float>((i / 13 + i / (size_t{11} * low.stride)) % 5 * (shape.planes - 1)) / 4.0f;
+    queue.commands().enqueueWriteBuffer(matching.u(), CL_TRUE, 0, cells.size() * sizeof(float), cells.data());
+    const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
+    const Volume cost = read_shorts(filter_stage.filtered(), shape.planes, 1024);
+    doubt_stage.run(matching, filter_stage.filtered(), noise_stage, far_planes);
+    const Volume doubted = read(matching.confidence(), 1);
+    expect_mostly(doubted, twin::doubt_nearer_side(confidence, u, cost, far_planes, low.scale, noise.t),
+                  5e-3f);
+    EXPECT_TRUE(shape.planes == 2 || doubted.values != confidence.values);
+}
+
+void VolumeStages::expect_sub_plane()
+{
+    if (shape.planes < 3)
+        return;
+    const Volume u = read(matching.u(), 1);
+    for (const FocusPyramid::Level &level : pyramid.levels()) {
+        const cl::Buffer refined = low.allocate(queue, 1);
+        queue.commands().enqueueCopyBuffer(matching.u(), refined, 0, 0,
+                                           sizeof(cl_float) * size_t{1} * low.height * low.stride);
+        sub_plane_stage.run(refined, focus_stage, pyramid, noise_stage,
+                            2.0f * static_cast<float>(level.shape.scale));
+        expect_mostly(read(refined, 1), twin::refine(u, read_level(level.focus, level.shape, 32), noise.t),
+                      0.03f);
+    }
 }
 
 void VolumeStages::expect_noise_as_made()
@@ -211,11 +322,11 @@ void VolumeStages::expect_cost_volume()
     const twin::Colours small = read_small();
     cost_stage.run_fine(focus_stage, noise_stage);
     const Volume fine = twin::smooth_along_z(read_shorts(focus_stage.volume(), shape.planes, 32), noise.t);
-    const Volume fine_cost = twin::fine_cost(fine, twin::median(twin::top_of(fine).values));
+    const Volume fine_cost = twin::fine_cost(fine, twin::median(twin::top_of(fine).values), noise.t);
     const Volume found = read_shorts(cost_stage.cost(), shape.planes, 1024);
     expect_alike(found, fine_cost, 0.02f);
 
-    cost_stage.run_coarse(small_stage, noise_stage);
+    cost_stage.run_coarse(small_stage, noise_stage, close_planes);
     const Volume coarse = twin::smooth_along_z(twin::coarse_focus(small), noise.t);
     const float median_fine_range = twin::median(twin::range_of(fine).values),
                 median_range = twin::median(twin::range_of(coarse).values);
@@ -286,10 +397,10 @@ void VolumeStages::expect_fill_and_upsampling()
 {
     const twin::Colours guide = read_guide();
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
-    fill_stage.run(matching);
+    fill_stage.run(matching, noise.t);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
     const Volume filled = read(matching.u(), 1);
-    expect_alike(filled, twin::fill(u, confidence, guide, high), 0.05f);
+    expect_alike(filled, twin::fill(u, confidence, guide, high, noise.t), 0.05f);
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
     upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);

@@ -18,7 +18,7 @@ Volume mean_of_colours(const TestStack &stack); /* DN; luma itself where there i
 Volume average_squares(const Volume &planes, unsigned scale);
 Volume fine_focus(const Volume &luma, const Noise &noise, unsigned scale);
 Volume smooth_along_z(const Volume &focus, float t);
-Volume fine_cost(const Volume &focus, float median_top);
+Volume fine_cost(const Volume &focus, float median_top, float t);
 Volume coarse_focus(const Colours &small);
 Volume cost(const Volume &fine_cost, const Volume &fine, const Volume &coarse, float median_fine_range,
             float median_range, float t);
@@ -39,12 +39,25 @@ Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t);
 Volume match(const Volume &cost, const Colours &guide, float t);
 Volume decide(const Volume &total, float t);
 Volume mean_over_planes(const Volume &cost);
-Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence);
+Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t);
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);
 std::vector<uint8_t> upsample_confidence(const Volume &confidence, unsigned width, unsigned height,
                                          unsigned scale);
 std::vector<uint16_t> keep_confident(const std::vector<uint16_t> &depth,
                                      const std::vector<uint8_t> &confidence,
                                      const std::vector<uint8_t> *moved, float high_confidence);
+
+/* What follows the blur step, in twin_volume_blur.cpp. */
+Volume mean_of_small(const Colours &small);
+Volume focus_on_scale(const Volume &luma, float t);
+Volume least_over_planes(const Volume &focus);
+float quantile(std::vector<float> values, double share);
+float fall_beside_peaks(const Volume &focus);
+Volume without_leak(const Volume &focus, float middle, float blur_step, unsigned scale, float t);
+Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume &cost, float blur_step,
+                         unsigned scale, float t);
+Volume refine(const Volume &u, const Volume &focus, float t);
+std::vector<uint16_t> limit_depth(const std::vector<uint16_t> &depth, unsigned width, unsigned height,
+                                  unsigned block, float blur_step, unsigned planes);
 
 } // namespace dff::twin
