@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "aif_picture.h"
 
+#include "gstcl/blur_step.h"
 #include "gstcl/mapped_frame.h"
 #include "gstcl/mapped_stack.h"
 
@@ -125,7 +126,7 @@ void AifPicture::fill(GstBuffer *stack, GstBuffer *depth, AifComposer::Blend ble
         if (std::exchange(encoder_is_new_, false))
             composer_->set_encoder(*encoder_);
         mapped_depth.emplace(depth_, depth, GST_MAP_READ);
-        depth_view = {mapped_depth->memory(), mapped_depth->stride()};
+        depth_view = {mapped_depth->memory(), mapped_depth->stride(), blur_step_of(depth)};
     }
     const MappedBuffer output(picture, GST_MAP_WRITE);
     composer_->compose(mapped_stack.view(), depth_view, blend, output.memory(), layout);

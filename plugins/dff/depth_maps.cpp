@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depth_maps.h"
 
+#include "gstcl/blur_step.h"
+
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -99,6 +101,13 @@ void DepthMaps::stamp(GstBuffer *stack, const StackClock::Time &time, guint64 in
             gst_buffer_add_reference_timestamp_meta(map->buffer(), clock->reference, clock->timestamp,
                                                     clock->duration);
     }
+}
+
+void DepthMaps::add_blur_step(float pixels)
+{
+    for (const auto &map : maps_)
+        if (map->output().format() == GST_VIDEO_FORMAT_GRAY16_LE)
+            dff::add_blur_step(map->buffer(), pixels);
 }
 
 void DepthMaps::push(const std::function<void(GstPad *, GstFlowReturn)> &pushed)

@@ -28,6 +28,9 @@ public:
     /* Gives the pictures the time and the clock of `stack`, the `index`-th of its stream. */
     void stamp(GstBuffer *stack, const StackClock::Time &time, guint64 index);
 
+    /* Tells the depth map's reader the stack's blur step, pixels a plane. */
+    void add_blur_step(float pixels);
+
     /* Pushes each picture and tells `pushed` what came of it. */
     void push(const std::function<void(GstPad *, GstFlowReturn)> &pushed);
 

@@ -233,6 +233,11 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
             stack,
             state.clock.next(state.depth.stack().frame, GST_BUFFER_PTS(stack), GST_BUFFER_DURATION(stack)),
             state.next_stack);
+        if (const float blur_step = state.depth.blur_step(); known && blur_step > 0.0f) {
+            GST_DEBUG_OBJECT(self, "stack %" G_GUINT64_FORMAT ": %.2f px of blur a plane", state.next_stack,
+                             blur_step);
+            maps.add_blur_step(blur_step);
+        }
         account(self, gst_util_get_timestamp() - start, is_first, known);
         GST_DEBUG_OBJECT(self, "stack %" G_GUINT64_FORMAT " (number %" G_GUINT64_FORMAT ") %s",
                          state.next_stack, depth.sequence, known ? "has depth" : "has no depth");

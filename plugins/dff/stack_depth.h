@@ -55,6 +55,7 @@ public:
 
     /* Of the last stack; empty before the first. */
     StageTimes times() const { return engine_ ? engine_->times() : StageTimes(); }
+    float blur_step() const { return engine_ ? engine_->blur_step() : 0.0f; } /* FocusEngine::blur_step() */
     std::optional<float> residual() const { return engine_ ? engine_->residual() : std::nullopt; }
 
 private:

@@ -103,9 +103,11 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
         throw EngineError(EngineError::Kind::Failed,
                           "The depth map or the picture does not have the stack's size");
     translate_errors(*device_, [&] {
-        const Pictures pictures{depth_.upload(depth.memory), picture_.target(picture),
-                                depth.stride / sizeof(cl_ushort)};
+        Pictures pictures{depth_.upload(depth.memory), picture_.target(picture),
+                          depth.stride / sizeof(cl_ushort)};
         stack_.assign(stack);
+        if (blend != Blend::Sharp)
+            limit_depth(pictures, depth.blur_step);
         if (blend == Blend::Soft)
             noise_.run(stack_);
         if (blend == Blend::Sharp)
@@ -117,6 +119,16 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
         picture_.download(picture);
         times_ = queue_.finish();
     });
+}
+
+void AifComposer::limit_depth(Pictures &pictures, float blur_step)
+{
+    if (!DepthReach::is_needed(blur_step))
+        return;
+    if (!reach_)
+        reach_.emplace(queue_, shape_);
+    pictures.depth = reach_->run(pictures.depth, pictures.depth_stride, blur_step);
+    pictures.depth_stride = shape_.width;
 }
 
 void AifComposer::compose_sharp(const Pictures &pictures, std::span<const RowLayout> layout)

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/depth_reach.h"
 #include "engine/focus_engine.h"
 #include "engine/noise_estimate.h"
 #include "engine/sharp_blend.h"
@@ -30,11 +31,13 @@ public:
     struct DepthView {
         std::span<const std::byte> memory;
         size_t stride;
+        float blur_step = 0.0f; /* pixels of circle of confusion a plane; 0: not known */
     };
 
     /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. Linear and
-     * Soft take the depth softened (kernels/soften_depth.cl), since a step in it would show. Pixels without
-     * a depth become the mean of all planes. Throws EngineError. */
+     * Soft take the depth softened (kernels/soften_depth.cl), since a step in it would show, and
+     * no farther than where the blur of what is nearer beside it reaches (kernels/depth_reach.cl). Pixels
+     * without a depth become the mean of all planes. Throws EngineError. */
     void compose(const StackView &stack, const DepthView &depth, Blend blend, std::span<std::byte> picture,
                  std::span<const RowLayout> layout);
 
@@ -50,6 +53,7 @@ private:
 
     void write_positions(const DepthEncoder &encoder);
     void write_fixed_positions(const DepthEncoder &encoder);
+    void limit_depth(Pictures &pictures, float blur_step);
     void compose_sharp(const Pictures &pictures, std::span<const RowLayout> layout);
     void compose_pixels(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
     void compose_strips(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
@@ -72,6 +76,7 @@ private:
         0.0f; /* of aif_strips.cl: positions a depth pixel, 0 where they must be looked up */
     DepthEncoder encoder_;
     std::optional<SharpBlend> sharp_; /* made at its first use */
+    std::optional<DepthReach> reach_; /* likewise */
     StageTimes times_;
 };
 
