@@ -37,9 +37,9 @@ INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, f
     return is_one ? u + trust * (vertex - u) : u;
 }
 
-/* In place; focus: of a scale `factor` times as coarse. Work-items (1, low height). */
+/* placed: u so moved, its sides mirrored; focus: of a scale `factor` times as coarse. Work-items (1, low height). */
 __kernel void refine(__global const short *focus, __global const float *floor, __global const Noise *noise,
-                     __global float *u, int factor, int width, int stride, int planes, int focus_height, int focus_stride)
+                     __global const float *u, __global float *placed, int factor, int width, int stride, int planes, int focus_height, int focus_stride)
 {
     const int y = (int)get_global_id(1);
     const size_t row = (size_t)y * stride + SIDE, plane = (size_t)focus_height * focus_stride;
@@ -70,6 +70,31 @@ __kernel void refine(__global const short *focus, __global const float *floor, _
             here = vload16(0, lanes[1]);
             after = vload16(0, lanes[2]);
         }
-        WIDE(u + row + x) = clamp(refined(position, before, here, after, middle, *floor, noise->t), 0.0f, planes - 1.0f);
+        WIDE(placed + row + x) = clamp(refined(position, before, here, after, middle, *floor, noise->t), 0.0f, planes - 1.0f);
+    }
+    mirror_ends(placed + row, width);
+}
+
+#define REACH 2 /* cells */
+
+/* What noise has moved to and fro is evened out: u is the mean of 5x5 cells, weighted by max(0, 1 - |placed' - placed|), so
+ * that steps in depth stay. Work-items (1, low height). */
+__kernel void even_out(__global const float *placed, __global float *u, int width, int stride)
+{
+    const int y = (int)get_global_id(1), height = (int)get_global_size(1);
+    for (int x = 0; x < width; x += 16) {
+        const float16 own = READ_WIDE(placed + (size_t)y * stride + SIDE + x);
+        float16 sum = 0.0f, weights = 0.0f;
+        for (int j = -REACH; j <= REACH; j++) {
+            __global const float *cells = placed + (size_t)reflect(y + j, height) * stride + SIDE + x;
+            UNROLL
+            for (int i = -REACH; i <= REACH; i++) {
+                const float16 other = READ_WIDE(cells + i);
+                const float16 weight = max(1.0f - fabs(other - own), 0.0f);
+                sum += weight * other;
+                weights += weight;
+            }
+        }
+        WIDE(u + (size_t)y * stride + SIDE + x) = sum / weights;
     }
 }

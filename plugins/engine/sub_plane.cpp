@@ -7,11 +7,14 @@
 namespace dff {
 
 SubPlane::SubPlane(CommandQueue &queue, const LowShape &low)
-    : queue_(queue), low_(low), least_(low.allocate(queue, 1)), floor_(queue.allocate(sizeof(cl_float)))
+    : queue_(queue), low_(low), least_(low.allocate(queue, 1)), placed_(low.allocate(queue, 1)),
+      floor_(queue.allocate(sizeof(cl_float)))
 {
     find_least_ = Program(queue.device(), "blur_step").kernel("find_least");
     quantile_ = Program(queue.device(), "cost_volume").kernel("quantile");
-    refine_ = Program(queue.device(), "sub_plane").kernel("refine");
+    const Program program(queue.device(), "sub_plane");
+    refine_ = program.kernel("refine");
+    even_out_ = program.kernel("even_out");
 }
 
 void SubPlane::run(const cl::Buffer &u, const FocusVolume &focus, const FocusPyramid &pyramid,
@@ -34,8 +37,9 @@ void SubPlane::run(const cl::Buffer &u, const FocusVolume &focus, const FocusPyr
     queue_.begin_stage("sub-plane");
     queue_.run(find_least_, shape.rows(), *volume, least_, shape.width, shape.stride, shape.planes);
     queue_.run(quantile_, {1}, least_, floor_, 0.1f, 1.0f, shape.width, shape.height, shape.stride);
-    queue_.run(refine_, low_.rows(), *volume, floor_, noise.noise(), u, shape.scale / low_.scale, low_.width,
-               low_.stride, low_.planes, shape.height, shape.stride);
+    queue_.run(refine_, low_.rows(), *volume, floor_, noise.noise(), u, placed_, shape.scale / low_.scale,
+               low_.width, low_.stride, low_.planes, shape.height, shape.stride);
+    queue_.run(even_out_, low_.rows(), placed_, u, low_.width, low_.stride);
 }
 
 } // namespace dff

@@ -19,8 +19,8 @@ public:
 private:
     CommandQueue &queue_;
     LowShape low_;
-    cl::Kernel find_least_, quantile_, refine_;
-    cl::Buffer least_, floor_;
+    cl::Kernel find_least_, quantile_, refine_, even_out_;
+    cl::Buffer least_, placed_, floor_;
 };
 
 } // namespace dff

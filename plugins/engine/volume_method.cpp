@@ -53,7 +53,7 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 14 * planes + 9 + 2 * 32; /* of shorts; one of floats is two */
+    const uint64_t pictures = 14 * planes + 9 + 2 * 33; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const bool is_interleaved_or_16 =
         shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;

@@ -189,7 +189,7 @@ Volume refine(const Volume &u, const Volume &focus, float t)
     const float floor = quantile(least_over_planes(focus).values, 0.1);
     const float factor = std::floor(static_cast<float>(u.width) / static_cast<float>(focus.width));
     const auto last = static_cast<int>(focus.planes) - 1;
-    return like(u, [&](int x, int y, unsigned) {
+    const Volume placed = like(u, [&](int x, int y, unsigned) {
         const float fx = (static_cast<float>(x) + 0.5f) / factor - 0.5f,
                     fy = (static_cast<float>(y) + 0.5f) / factor - 0.5f;
         const int left = static_cast<int>(std::floor(fx)), top = static_cast<int>(std::floor(fy));
@@ -213,6 +213,17 @@ Volume refine(const Volume &u, const Volume &focus, float t)
         if (bend <= 1e-4f || std::abs(vertex - position) > 0.5f)
             return position;
         return std::clamp(position + (1.0f - 0.6f * t) * (vertex - position), 0.0f, static_cast<float>(last));
+    });
+    return like(u, [&](int x, int y, unsigned) {
+        float sum = 0.0f, weights = 0.0f;
+        for (int j = -2; j <= 2; j++)
+            for (int i = -2; i <= 2; i++) {
+                const float other = at(placed, x + i, y + j);
+                const float weight = std::max(1.0f - std::abs(other - placed.at(x, y)), 0.0f);
+                sum += weight * other;
+                weights += weight;
+            }
+        return sum / weights;
     });
 }
 
