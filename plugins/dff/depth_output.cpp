@@ -64,6 +64,13 @@ void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, 
     send_segment(segment);
 }
 
+void DepthOutput::end(const StreamSegment &segment)
+{
+    open();
+    if (segment.seqnum != GST_SEQNUM_INVALID)
+        send_segment(segment);
+}
+
 void DepthOutput::pass_gap(GstEvent *gap, const StreamSegment &segment)
 {
     if (!caps_)

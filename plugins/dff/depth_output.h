@@ -33,6 +33,10 @@ public:
      * caps of 16-bit maps. */
     void prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const StreamSegment &segment);
 
+    /* Sends what has to come before the end, if it has not: stream-start and segment, even where no picture
+     * was sent. */
+    void end(const StreamSegment &segment);
+
     /* Sends the gap within `segment`; lost where no picture was sent yet, whose caps nobody knows. */
     void pass_gap(GstEvent *gap, const StreamSegment &segment);
 

@@ -317,6 +317,9 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
     case GST_EVENT_FLUSH_STOP:
         state.outputs.restart();
         break;
+    case GST_EVENT_EOS:
+        state.outputs.end(state.segment);
+        break;
     default:
         if (GST_EVENT_IS_SERIALIZED(event))
             state.outputs.open();

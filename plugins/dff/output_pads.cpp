@@ -40,6 +40,12 @@ void OutputPads::restart()
     gst_flow_combiner_reset(flows_);
 }
 
+void OutputPads::end(const StreamSegment &segment)
+{
+    for (const auto &output : outputs())
+        output->end(segment);
+}
+
 void OutputPads::pass_gap(GstEvent *gap, const StreamSegment &segment)
 {
     for (const auto &output : outputs())

@@ -29,7 +29,8 @@ public:
     void open();
     void restart();
 
-    /* DepthOutput::pass_gap() of each. */
+    /* DepthOutput::end() and pass_gap() of each. */
+    void end(const StreamSegment &segment);
     void pass_gap(GstEvent *gap, const StreamSegment &segment);
 
     /* Pushes the maps and returns what upstream is to know of it. */

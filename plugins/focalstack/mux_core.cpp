@@ -275,7 +275,7 @@ void MuxCore::end_if_due(GstEvent *eos, const MuxInput *last)
         if (end_is_due()) {
             finish_and_tell(last);
             ended_ = true;
-            output_.push_event(eos ? eos : gst_event_new_eos());
+            output_.end(eos ? eos : gst_event_new_eos());
             return;
         }
     }

@@ -57,6 +57,12 @@ void MuxOutput::send_due_segment()
     segment_due_ = false;
 }
 
+void MuxOutput::end(GstEvent *eos)
+{
+    send_due_segment();
+    gst_pad_push_event(source_, eos);
+}
+
 GstFlowReturn MuxOutput::send(Outcome outcome, const MuxStatistics &statistics)
 {
     if (!outcome.stack) {

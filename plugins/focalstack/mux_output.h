@@ -37,6 +37,9 @@ public:
     /* Sends the stack, or tells of the loss. */
     GstFlowReturn send(Outcome outcome, const MuxStatistics &statistics);
 
+    /* A stream that ends without a stack has a segment too: aggregators downstream number their end by it. */
+    void end(GstEvent *eos);
+
     /* Goes downstream as soon as downstream can understand it; lost where nothing was sent yet. */
     bool send_gap(GstEvent *gap);
 

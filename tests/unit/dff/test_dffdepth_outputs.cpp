@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_pipeline.h"
 
+#include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
 
 using dff::run;
@@ -111,4 +112,21 @@ TEST(DffDepthOutputs, only_the_confidence_linked_is_enough)
 TEST(DffDepthOutputs, nothing_linked_says_so)
 {
     EXPECT_FALSE(run("lenssweeptestsrc num-buffers=12 ! focalstackmux ! dffdepth").error.empty());
+}
+
+/* Aggregators number their end by the segment. */
+TEST(DffDepthOutputs, a_stream_without_a_stack_has_a_segment_before_its_end)
+{
+    gst_init(nullptr, nullptr);
+    GstHarness *harness = gst_harness_new("dffdepth");
+    gst_harness_set_src_caps_str(harness, "video/x-focal-stack,format=GRAY8,width=64,height=64,planes=2,"
+                                          "framerate=26/1");
+    gst_harness_push_event(harness, gst_event_new_eos());
+    std::vector<GstEventType> types;
+    while (GstEvent *event = gst_harness_try_pull_event(harness)) {
+        types.push_back(GST_EVENT_TYPE(event));
+        gst_event_unref(event);
+    }
+    EXPECT_EQ(types, (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+    gst_harness_teardown(harness);
 }

@@ -367,3 +367,17 @@ TEST(MuxStream, a_converter_before_the_mux_is_told_what_stacks_are_wanted)
                                                      "framerate=[0/1,2147483647/1]");
     EXPECT_TRUE(gst_caps_is_equal(allowed, wanted));
 }
+
+/* Aggregators number their end by the segment. */
+TEST(MuxStream, a_stream_without_a_stack_has_a_segment_before_its_end)
+{
+    const auto harness = new_mux("focalstackmux");
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
+    gst_harness_push_event(harness.get(), gst_event_new_eos());
+    std::vector<GstEventType> types;
+    while (GstEvent *event = gst_harness_try_pull_event(harness.get())) {
+        types.push_back(GST_EVENT_TYPE(event));
+        gst_event_unref(event);
+    }
+    EXPECT_EQ(types, (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+}
