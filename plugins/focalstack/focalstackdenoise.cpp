@@ -18,8 +18,8 @@
  *
  * ## Example pipeline
  * |[
- * gst-launch-1.0 lenssweeptestsrc num-buffers=60 noise=strong ! focalstackmux ! queue ! focalstackdenoise !
- * queue ! \ dffdepth ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=60 noise=strong ! focalstackmux ! queue ! \
+ *     focalstackdenoise ! queue ! dffdepth ! fakesink
  * ]| computes depth of a noisy camera from the mean of up to 8 sweeps.
  */
 #include "focalstack/focalstackdenoise.h"
