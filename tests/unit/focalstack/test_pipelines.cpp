@@ -265,7 +265,7 @@ TEST(Pipelines, ten_thousand_frames_take_no_more_memory_than_a_thousand)
     const GstVideoInfo info = video_info("GRAY8", 64, 64);
     for (const char *window : {"sweep", "rolling"}) {
         Pipeline pipeline(source("GRAY8", 64, 64) + "focalstackmux on-missing=repeat window=" + window +
-                          " ! queue ! focalstackdemux ! fakesink sync=false");
+                          " ! queue max-size-buffers=4 ! focalstackdemux ! fakesink sync=false");
         const auto run = [&](uint64_t first, uint64_t last) {
             for (uint64_t number = first; number < last; number++)
                 if (number % 97 != 0)
