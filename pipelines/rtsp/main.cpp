@@ -31,13 +31,14 @@ void serve(const dff::ServerOptions &options)
         g_warning("Plane and depth facts of each frame are not sent: the plug-in dffrtp is missing");
     g_message("The source is tried");
     dff::warm_up(options.launch, warm_up_patience);
-    for (const std::string &url : server.urls())
-        std::printf("%s\n", url.c_str());
-    std::fflush(stdout);
 
+    /* Before it says that it serves: whoever reads that may end it at once. */
     const std::unique_ptr<GMainLoop, LoopUnref> loop(g_main_loop_new(nullptr, FALSE));
     g_unix_signal_add(SIGINT, quit, loop.get());
     g_unix_signal_add(SIGTERM, quit, loop.get());
+    for (const std::string &url : server.urls())
+        std::printf("%s\n", url.c_str());
+    std::fflush(stdout);
     g_main_loop_run(loop.get());
 }
 
