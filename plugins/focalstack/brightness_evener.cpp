@@ -214,9 +214,8 @@ std::vector<std::vector<Brightness>> find_brightness(std::span<const cv::Mat> al
     for (std::size_t channel = 0; channel < black.size(); channel++) {
         const std::vector<Brightness> onto = onto_middle(means, {usable.get(), aligned.size()},
                                                          static_cast<int>(channel), black[channel], largest);
-        std::vector<double> gains;
-        for (const Brightness &brightness : onto)
-            gains.push_back(brightness.gain);
+        std::vector<double> gains(onto.size());
+        std::ranges::transform(onto, gains.begin(), &Brightness::gain);
         const auto reference = std::ranges::find(gains, median(gains)) - gains.begin();
         for (std::size_t z = 0; z < aligned.size(); z++)
             result[z].push_back(chained(inverse(onto[static_cast<std::size_t>(reference)]), onto[z]));

@@ -80,8 +80,8 @@ cv::Rect surely_shown(const PlaneAlignment &alignment, cv::Size size, int step)
     return cv::Rect(from, to) & cv::Rect({}, size);
 }
 
-void fill_place(const cv::Mat &neighbour, cv::Mat plane, const PlaneAlignment &alignment, cv::Rect place,
-                int step)
+void fill_place(const cv::Mat &neighbour, const cv::Mat &plane, const PlaneAlignment &alignment,
+                cv::Rect place, int step)
 {
     if (place.empty())
         return;
