@@ -18,9 +18,10 @@
  * neighbours. Each of the two is told once, by a warning, and by `stats`.
  *
  * Moved planes are resampled with Lanczos' kernel, since with a softer one noise and sharpness differ from
- * plane to plane, which is what depth from focus looks at. Size stays; what a plane does not show at its
- * border is taken from its neighbour towards the middle, so that depth and all-in-focus picture
- * come from the planes that do show it. Planes that lie within 0.02 pixels of their place are copied.
+ * plane to plane, which is what depth from focus looks at. Size stays; what a plane does not show, farther
+ * than 4 pixels beyond its border, is taken from its neighbour towards the middle, so that depth and
+ * all-in-focus picture come from the planes that do show it. Planes that lie within 0.02 pixels of their
+ * place are copied.
  *
  * With even-brightness=true all planes get the brightness and the colours of the plane in between, by a gain
  * and an offset a channel: lights flicker, and cameras meter each photograph anew. It takes a few

@@ -20,10 +20,13 @@ constexpr double detail_left = 0.6;
 constexpr double box_share = 0.01;
 constexpr int least_box = 5; /* pixels */
 
-/* Pixels over which a plane fades into what it is filled with. A wider rim costs depth: where two planes mix
- * they have less noise than others, and lose every contest in which noise has a say. */
-constexpr double fade_start = 1.0;
-constexpr double fade_length = 2.0;
+/* Pixels inside a plane's border. A little beyond it the plane goes on as its own mirrored picture, which is
+ * as sharp as the plane is there; farther out it fades, over a pixel, into what it is filled with. A copy of
+ * the neighbour tells no depth, and next to the border costs depth as far as evidence is spread: planes that
+ * breathe by 3 % lost 2.3 dB by one, and a rim within the picture, which planes had that moved by a tenth of
+ * a pixel, 5. */
+constexpr double fade_start = -4.0;
+constexpr double fade_length = 1.0;
 
 cv::Mat softened(const cv::Mat &picture, cv::Rect place, int step)
 {

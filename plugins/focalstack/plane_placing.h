@@ -21,9 +21,9 @@ bool is_shown(const PlaneAlignment &alignment);
  * from some planes and not from others. What lies outside of `plane` is undefined. */
 void undo_warp(const cv::Mat &plane, cv::Mat aligned, const PlaneWarp &warp, int step = 1);
 
-/* Fills what each plane does not show from its neighbour towards the middle: a border that lies further in
- * with a copy, a plane that is not trusted with a softened one, which is never sharper than the plane it
- * comes from, where the depth belongs. */
+/* Fills what each plane does not show from its neighbour towards the middle: what lies more than 4 pixels
+ * beyond its border with a copy, a plane that is not trusted with a softened one, which is never sharper than
+ * the plane it comes from, where the depth belongs. */
 void fill_hidden(std::span<const cv::Mat> aligned, std::span<const PlaneAlignment> alignments, int step = 1);
 
 } // namespace dff

@@ -14,9 +14,10 @@
  * messages (`render`).
  *
  * The request pad `depth` gives the true depth once a sweep: GRAY16_LE in dioptres with #GstDepthMeta, 0
- * where a depth map has no value. It is that of one instant, the middle of the sweep: (planes - 1) / 2 planes
- * after the first one, between two planes where their number is even. There what moves is seen, and the
- * magnification of a lens that breathes is 1. Put a queue behind each pad.
+ * where a depth map has no value. What moves is seen where it is in the middle of the sweep, (planes - 1) / 2
+ * planes after the first one, which lies between two planes where their number is even. A lens that breathes
+ * has a magnification of 1 at plane planes / 2, onto which focalstackalign aligns. Put a queue behind each
+ * pad.
  *
  * ## Example launch lines
  * |[

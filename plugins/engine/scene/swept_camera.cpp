@@ -40,7 +40,9 @@ PlaneView SweptCamera::view(unsigned plane) const
     /* Planes need not be even in dioptres; the renderer's plane positions are. */
     const double last = plan().planes() - 1.0;
     const double focus = (plan().near() - plan().power(plane)) / (plan().near() - plan().far()) * last;
-    const double magnification = 1.0 + settings_.breathing * (plane - middle_of_sweep()) / last;
+    const unsigned middle = plan().planes() / 2;
+    const double beyond_middle = static_cast<double>(plane) - middle;
+    const double magnification = 1.0 + settings_.breathing * beyond_middle / last;
     cv::RNG random(mix_seed(mix_seed(settings_.seed, jitter_seed), plane));
     const double x = (size().width - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);
     const double y = (size().height - 1) / 2.0 * (1.0 - magnification) + random.gaussian(settings_.jitter);

@@ -20,8 +20,9 @@ struct SweptCameraSettings {
     double blur_step = 2.0; /* mean change of the circle of confusion from plane to plane, pixels */
     SensorNoise noise;
     double motion = 0.0;    /* pixels a ball flies from plane to plane, 0: there is no ball */
-    double breathing = 0.0; /* magnification of the last plane minus that of the first; 1 in the
-                               middle of the sweep, as depth_map() has it */
+    double breathing = 0.0; /* magnification of the last plane minus that of the first; plane
+                               planes / 2, onto which stacks are aligned, is seen as depth_map()
+                               has it */
     double jitter = 0.0;    /* root mean square of each plane's shift along x and y, pixels */
     uint64_t seed = 0;
 };
@@ -48,8 +49,8 @@ public:
     /* The sensor's picture of it: `realisation` numbers independent draws of the noise. */
     cv::Mat3b digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t realisation) const;
 
-    /* The true depth: pixel = 1 + round(65534 (near - d) / (near - far)), 0 where it is not known; all of it
-     * at one instant, middle_of_sweep(). */
+    /* The true depth: pixel = 1 + round(65534 (near - d) / (near - far)), 0 where it is not known. What moves
+     * stands where it is at middle_of_sweep(). */
     cv::Mat1w depth_map(uint64_t sweep) const;
 
 private:
