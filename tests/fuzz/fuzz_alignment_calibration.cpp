@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         for (unsigned planes = 1; planes <= 64; planes++)
             try {
                 for (const dff::PlaneAlignment &plane : calibration.alignments({8192, 64}, planes))
-                    dff::require(plane.warp.scale() > 0.05 && std::isfinite(plane.warp.dx + plane.warp.dy));
+                    dff::require(plane.warp.scale() > 0.05 &&
+                                 std::isfinite(plane.warp.shift().x + plane.warp.shift().y));
             } catch (const std::runtime_error &) {
                 continue; /* another number of planes */
             }
