@@ -50,15 +50,24 @@ static void run(GstLensSweepSrc *self)
     tell_latency(self);
 }
 
-/* False if nothing downstream takes it, which is an error, or if the stream ends just now. */
+/* Compared with what the caps say and not with the rate before: they may have been negotiated for a rate that
+ * was set and taken back since. False if nothing downstream takes it, which is an error, or if the stream
+ * ends just now. */
 static bool tell_frame_rate(GstLensSweepSrc *self, double frame_rate)
 {
-    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(GST_BASE_SRC_PAD(self));
-    caps = gst_caps_make_writable(caps);
     gint numerator = 0;
     gint denominator = 1;
     gst_util_double_to_fraction(frame_rate, &numerator, &denominator);
-    gst_caps_set_simple(caps, "framerate", GST_TYPE_FRACTION, numerator, denominator, nullptr);
+    g_auto(GValue) fraction = G_VALUE_INIT;
+    g_value_init(&fraction, GST_TYPE_FRACTION);
+    gst_value_set_fraction(&fraction, numerator, denominator);
+
+    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(GST_BASE_SRC_PAD(self));
+    const GValue *told = gst_structure_get_value(gst_caps_get_structure(caps, 0), "framerate");
+    if (told && gst_value_compare(told, &fraction) == GST_VALUE_EQUAL)
+        return true;
+    caps = gst_caps_make_writable(caps);
+    gst_caps_set_value(caps, "framerate", &fraction);
     if (gst_pad_peer_query_accept_caps(GST_BASE_SRC_PAD(self), caps))
         return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
     GST_ELEMENT_ERROR(
@@ -81,7 +90,6 @@ static bool take_changes(GstLensSweepSrc *self)
     if (!changed)
         return true;
     settings.plan = state.settings.plan;
-    const bool rate_changed = settings.rate != state.settings.rate;
     GST_INFO_OBJECT(self, "rate %g sweeps a second, exposure %g us", settings.rate, settings.exposure_us);
     state.capture->change(settings);
     GST_OBJECT_LOCK(self);
@@ -90,8 +98,6 @@ static bool take_changes(GstLensSweepSrc *self)
     GST_OBJECT_UNLOCK(self);
     check_load(self);
     tell_latency(self);
-    if (!rate_changed)
-        return true;
     return tell_frame_rate(self, settings.frame_rate());
 }
 

@@ -224,6 +224,32 @@ TEST(LensSweepSrc, exposure_gain_and_rate_change_while_playing)
     EXPECT_NEAR(static_cast<double>(least), 2e6 + 1e9 / 120, 1e4);
 }
 
+/* Another thread may set the rate between the start and the negotiation, and set it back before the first
+ * frame. */
+TEST(LensSweepSrc, a_rate_that_is_taken_back_while_caps_are_negotiated_is_not_told)
+{
+    Pipeline pipeline(camera + "num-buffers=1 " + out);
+    GstElement *source = pipeline.element("camera");
+    const auto set_other_rate = [](GstPad *, GstPadProbeInfo *info, gpointer element) {
+        if (GST_QUERY_TYPE(GST_PAD_PROBE_INFO_QUERY(info)) == GST_QUERY_CAPS)
+            g_object_set(element, "rate", 30.0, nullptr);
+        return GST_PAD_PROBE_OK;
+    };
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(source, "src");
+    const gulong probe =
+        gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_QUERY_UPSTREAM, set_other_rate, source, nullptr);
+    pipeline.set_state(GST_STATE_PAUSED);
+    while (!gst_pad_has_current_caps(pad))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    gst_pad_remove_probe(pad, probe);
+    g_object_set(source, "rate", 15.0, nullptr);
+    pipeline.set_state(GST_STATE_PLAYING);
+    const Sample sample = pipeline.pull("out");
+    ASSERT_NE(sample, nullptr) << pipeline.wait();
+    const GstVideoInfo info = info_of(sample.get());
+    EXPECT_EQ(GST_VIDEO_INFO_FPS_N(&info), 60);
+}
+
 TEST(LensSweepSrc, sweeps_go_on_rising_when_the_rate_changes)
 {
     Pipeline pipeline(camera + out);
