@@ -14,6 +14,7 @@ namespace {
 
 constexpr uint32_t tile_pixels = 8;
 constexpr float sigmas_of_noise = 6.0F;  /* that a tile may be off, of strength 1 */
+constexpr uint32_t enough_tiles = 8000;  /* of one plane, to learn the noise from */
 constexpr float memory_of_noise = 0.8F;  /* share of the curve that stays from stack to stack */
 constexpr float most_over_single = 4.0F; /* noise between sweeps has at most this many times the variance that
                                             one picture shows: more is motion */
@@ -76,6 +77,7 @@ struct StackDenoiser::ComponentState {
     size_t tile_count;
     cl::Kernel measure, judge, count, average;
     cl::Buffer means, tiles, curve, rows;
+    std::vector<TileDifference> host_tiles; /* of the plane that noise is learned from */
     std::vector<RowLayout> host_rows;
     std::vector<NoiseCurve> singles; /* as one picture of each plane shows it */
     NoiseCurve noise{};              /* as it is believed */
@@ -96,7 +98,17 @@ StackDenoiser::StackDenoiser(std::shared_ptr<Device> device, const StackShape &s
         sweeps_ = queue_.allocate(tiles);
         for (const Component &component : components)
             components_.push_back(std::make_shared<ComponentState>(queue_, shape_, component, tiles_));
+        if (DenoiseStrips::suits(*device_, shape_))
+            make_strips();
     });
+}
+
+void StackDenoiser::make_strips()
+{
+    std::vector<DenoisedPart> parts;
+    for (const auto &part : components_)
+        parts.push_back({part->rows, part->means});
+    strips_.emplace(queue_, shape_, std::move(parts), tiles_);
 }
 
 void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, uint64_t absent,
@@ -112,11 +124,10 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
         else
             begin(view);
         upload(view, memory);
-        measure();
-        if (has_means_)
-            learn_noise();
-        judge(parameters);
-        average(parameters, changed & ~absent, absent);
+        if (strips_)
+            run_strips(parameters, changed & ~absent, absent);
+        else
+            run_tiles(parameters, changed & ~absent, absent);
         bytes_.download(memory);
         times_ = queue_.finish();
     });
@@ -159,9 +170,33 @@ void StackDenoiser::upload(const StackView &view, std::span<std::byte> memory)
     }
 }
 
+void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
+{
+    if (has_means_) {
+        std::vector<cl::Buffer> tiles;
+        for (const auto &part : components_)
+            tiles.push_back(part->tiles);
+        strips_->measure(bytes_.buffer(), learned_plane_, learned_step(), tiles);
+        learn_noise();
+    }
+    std::vector<NoiseBounds> bounds;
+    for (const auto &part : components_)
+        bounds.push_back({part->noise, part->spread, part->samples, sigmas_of_noise * parameters.strength});
+    strips_->run(bytes_.buffer(), moved_, sweeps_, bounds, least_change, parameters.frames, wanted, absent);
+}
+
+void StackDenoiser::run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
+{
+    measure();
+    if (has_means_)
+        learn_noise();
+    judge(parameters);
+    average(parameters, wanted, absent);
+}
+
 /* A row of tiles a work-item on CPUs, a tile elsewhere. */
 template <typename... Arguments>
-void StackDenoiser::run_tiles(cl::Kernel &kernel, const Arguments &...arguments)
+void StackDenoiser::enqueue_tiles(cl::Kernel &kernel, const Arguments &...arguments)
 {
     const cl::NDRange size(static_cast<size_t>((tiles_.s[0] + run_ - 1) / run_),
                            static_cast<size_t>(tiles_.s[1]), shape_.planes);
@@ -174,8 +209,8 @@ void StackDenoiser::run_tiles(cl::Kernel &kernel, const Arguments &...arguments)
 void StackDenoiser::measure()
 {
     for (const auto &part : components_)
-        run_tiles(part->measure, bytes_.buffer(), part->rows, part->means, part->tiles, part->width,
-                  part->height, tiles_, run_);
+        enqueue_tiles(part->measure, bytes_.buffer(), part->rows, part->means, part->tiles, part->width,
+                      part->height, tiles_, run_);
 }
 
 void StackDenoiser::judge(const DenoiseParameters &parameters)
@@ -197,21 +232,44 @@ void StackDenoiser::average(const DenoiseParameters &parameters, uint64_t wanted
     queue_.run(components_.front()->count, size, moved_, sweeps_, tiles_,
                static_cast<cl_int>(parameters.frames), static_cast<cl_ulong>(wanted));
     for (const auto &part : components_)
-        run_tiles(part->average, bytes_.buffer(), part->rows, part->means, sweeps_, part->width, part->height,
-                  tiles_, run_, static_cast<cl_ulong>(wanted), static_cast<cl_ulong>(absent));
+        enqueue_tiles(part->average, bytes_.buffer(), part->rows, part->means, sweeps_, part->width,
+                      part->height, tiles_, run_, static_cast<cl_ulong>(wanted),
+                      static_cast<cl_ulong>(absent));
 }
 
-/* From the tiles of one plane, which are waited for. */
+/* Rows of tiles that are looked at: every so many. */
+uint32_t StackDenoiser::learned_step() const
+{
+    return std::max(static_cast<uint32_t>(tiles_a_plane()) / enough_tiles, 1U);
+}
+
+/* The tiles of one plane, which are waited for: the sweeps that each is the mean of. */
+std::vector<uint8_t> StackDenoiser::read_tiles()
+{
+    const size_t across = static_cast<size_t>(tiles_.s[0]), down = static_cast<size_t>(tiles_.s[1]);
+    const size_t step = strips_ ? learned_step() : 1, rows = (down + step - 1) / step;
+    const size_t first = strips_ ? 0 : tiles_a_plane() * learned_plane_;
+    for (const auto &part : components_) {
+        part->host_tiles.resize(rows * across);
+        queue_.commands().enqueueReadBuffer(part->tiles, CL_FALSE, first * sizeof(TileDifference),
+                                            part->host_tiles.size() * sizeof(TileDifference),
+                                            part->host_tiles.data());
+    }
+    std::vector<uint8_t> sweeps(tiles_a_plane());
+    queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, tiles_a_plane() * learned_plane_, sweeps.size(),
+                                        sweeps.data());
+    for (size_t i = 1; i < rows; i++)
+        std::copy_n(sweeps.begin() + static_cast<std::ptrdiff_t>(i * step * across), across,
+                    sweeps.begin() + static_cast<std::ptrdiff_t>(i * across));
+    sweeps.resize(rows * across);
+    return sweeps;
+}
+
 void StackDenoiser::learn_noise()
 {
-    const size_t count = tiles_a_plane(), first = count * learned_plane_;
-    std::vector<uint8_t> sweeps(count);
-    queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, first, count, sweeps.data());
-    std::vector<TileDifference> tiles(count);
+    const std::vector<uint8_t> sweeps = read_tiles();
     for (const auto &part : components_) {
-        queue_.commands().enqueueReadBuffer(part->tiles, CL_TRUE, first * sizeof(TileDifference),
-                                            count * sizeof(TileDifference), tiles.data());
-        const auto between = noise_of_tiles(tiles, sweeps, part->component, part->samples);
+        const auto between = noise_of_tiles(part->host_tiles, sweeps, part->component, part->samples);
         if (!between)
             continue;
         const NoiseCurve single = part->single();
@@ -219,7 +277,7 @@ void StackDenoiser::learn_noise()
         for (size_t i = 0; i < single.size(); i++)
             part->noise[i] =
                 std::lerp(std::min((*between)[i], most_over_single * single[i]), part->noise[i], kept);
-        part->spread = std::lerp(spread_of_tiles(tiles, part->samples), part->spread, kept);
+        part->spread = std::lerp(spread_of_tiles(part->host_tiles, part->samples), part->spread, kept);
     }
     has_learned_ = true;
 }

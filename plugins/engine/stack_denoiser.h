@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/noise_curve.h"
+#include "engine/denoise_strips.h"
 #include "engine/opencl/host_buffer.h"
 #include "engine/plane_tracker.h"
 
@@ -52,8 +52,13 @@ private:
     void measure();
     void judge(const DenoiseParameters &parameters);
     void average(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
+    void make_strips();
+    void run_strips(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
+    void run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
+    uint32_t learned_step() const;
+    std::vector<uint8_t> read_tiles();
     void learn_noise();
-    template <typename... Arguments> void run_tiles(cl::Kernel &kernel, const Arguments &...arguments);
+    template <typename... Arguments> void enqueue_tiles(cl::Kernel &kernel, const Arguments &...arguments);
     size_t tiles_a_plane() const
     {
         return static_cast<size_t>(tiles_.s[0]) * static_cast<size_t>(tiles_.s[1]);
@@ -67,6 +72,7 @@ private:
     HostBuffer bytes_;
     cl::Buffer moved_, sweeps_;
     std::vector<std::shared_ptr<ComponentState>> components_;
+    std::optional<DenoiseStrips> strips_; /* on CPUs */
     PlaneTracker tracker_;
     bool has_means_ = false;
     bool has_learned_ = false;   /* noise from the difference of two sweeps */

@@ -226,30 +226,42 @@ std::string name_of(const testing::TestParamInfo<Case> &info)
            (info.param.style == KernelStyle::Tiles ? "_tiles" : "_pixels");
 }
 
+/* With the noise that the report tells. Something moves in the third stack. */
+void expect_agreement(const StackShape &shape, KernelStyle style)
+{
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(device_with(style), shape);
+    TwinOfDenoiser twin(shape);
+    for (unsigned t = 0; t < 5; t++) {
+        TestStack stack = noisy(clean, 4.0, t);
+        if (t >= 2)
+            for (unsigned y = 20; y < shape.height; y += 97)
+                std::fill_n(stack.memory.begin() + static_cast<std::ptrdiff_t>(stack.layout[1].offset +
+                                                                               y * stack.layout[1].stride),
+                            stack.layout[1].stride / 2, std::byte{200});
+        TestStack expected = stack;
+        denoise(denoiser, stack, {3, 1.0F});
+        const DenoiseReport used = denoiser.report();
+        twin.denoise(expected, used.noise[0], used.spread[0], 3);
+        EXPECT_LT(mean_square(stack, expected), 0.002) << "stack " << t;
+    }
+}
+
 } // namespace
 
-/* With the noise that the report tells; the picture's sizes are no multiples
- * of a tile's. Something moves in the third stack. */
+/* The picture's sizes are no multiples of a tile's. */
 TEST(StackDenoiser, agrees_with_its_twin)
 {
     for (const PixelFormat format : {PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::Rgb})
-        for (const KernelStyle style : {KernelStyle::Tiles, KernelStyle::Pixels}) {
-            const StackShape shape{format, 75, 67, 2};
-            const TestStack clean = smooth_stack(shape);
-            StackDenoiser denoiser(device_with(style), shape);
-            TwinOfDenoiser twin(shape);
-            for (unsigned t = 0; t < 5; t++) {
-                TestStack stack = noisy(clean, 4.0, t);
-                if (t >= 2)
-                    std::fill_n(stack.memory.begin() + stack.layout[1].offset + 20 * stack.layout[1].stride,
-                                stack.layout[1].stride / 2, std::byte{200});
-                TestStack expected = stack;
-                denoise(denoiser, stack, {3, 1.0F});
-                const DenoiseReport used = denoiser.report();
-                twin.denoise(expected, used.noise[0], used.spread[0], 3);
-                EXPECT_LT(mean_square(stack, expected), 0.002) << "stack " << t;
-            }
-        }
+        for (const KernelStyle style : {KernelStyle::Tiles, KernelStyle::Pixels})
+            expect_agreement({format, 75, 67, 2}, style);
+}
+
+/* CPUs denoise strips of 272 rows apart from each other, in place. */
+TEST(StackDenoiser, strips_meet_without_a_seam)
+{
+    expect_agreement({PixelFormat::Gray8, 75, 601, 2}, KernelStyle::Tiles);
+    expect_agreement({PixelFormat::Rgbx, 64, 290, 2}, KernelStyle::Tiles);
 }
 
 TEST_P(Formats, noise_of_a_still_scene_falls_with_the_number_of_sweeps)
