@@ -14,4 +14,11 @@ inline GstClockTime running_time(const GstSegment &segment, GstClockTime time)
                                              : GST_CLOCK_TIME_NONE;
 }
 
+/* Whether an event is a GAP before the first segment that counts in time, as a source sends whose caps were
+ * refused. GStreamer's aggregators take it for a fault of the program. */
+inline bool is_gap_out_of_time(GstEvent *event, const GstSegment &segment)
+{
+    return GST_EVENT_TYPE(event) == GST_EVENT_GAP && segment.format != GST_FORMAT_TIME;
+}
+
 } // namespace dff

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depthfileenc.h"
 
+#include "common/running_time.h"
 #include "matched_inputs.h"
 
 #include <optional>
@@ -134,6 +135,10 @@ static bool set_caps(GstDepthFileEnc *self, const char *pad, GstCaps *caps)
 static gboolean sink_event(GstAggregator *aggregator, GstAggregatorPad *pad, GstEvent *event)
 {
     auto *self = GST_DEPTH_FILE_ENC(aggregator);
+    if (dff::is_gap_out_of_time(event, pad->segment)) {
+        gst_event_unref(event);
+        return TRUE;
+    }
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
         GstCaps *caps = nullptr;
         gst_event_parse_caps(event, &caps);

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/depth_composer.h"
 
+#include "common/running_time.h"
 #include "gstcl/engine_message.h"
 
 #include <gst/video/video.h>
@@ -121,6 +122,10 @@ void DepthComposer::account(GstClockTime compute_time, bool is_first, bool with_
 std::optional<bool> DepthComposer::sink_event(GstAggregatorPad *pad, GstEvent *event)
 {
     const bool is_main = pad == main_pad_;
+    if (is_gap_out_of_time(event, pad->segment)) {
+        gst_event_unref(event);
+        return true;
+    }
     if (GST_EVENT_TYPE(event) == GST_EVENT_CAPS) {
         g_autoptr(GstEvent) taken = event;
         GstCaps *caps = nullptr;

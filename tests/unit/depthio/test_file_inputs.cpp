@@ -65,6 +65,12 @@ public:
         gst_pad_push_event(source_.get(), gst_event_new_segment(&segment));
     }
 
+    void push_gap_before_segment()
+    {
+        gst_pad_push_event(source_.get(), gst_event_new_stream_start(name_.c_str()));
+        gst_pad_push_event(source_.get(), gst_event_new_gap(0, period));
+    }
+
     void push(unsigned k)
     {
         const gsize bytes = name_ == "color" ? colour_bytes : name_ == "depth" ? depth_bytes : stack_bytes;
@@ -187,6 +193,26 @@ TEST(FileInputs, what_has_no_partner_is_left_out)
     for (const std::string &kind : encoders())
         for (const GstClockTime colour : {0 * GST_SECOND, 5 * GST_SECOND})
             EXPECT_EQ(files_of(kind, colour, {0, 2, 3}, 0, {0, 1, 3}), 2U) << kind;
+}
+
+/* As a source sends whose first caps were refused. */
+TEST(FileInputs, a_gap_before_the_segment_is_no_fault)
+{
+    for (const std::string &kind : encoders()) {
+        const GLogLevelFlags fatal =
+            g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL));
+        Encoder encoder(kind);
+        Input colour(encoder.element(), "color", 0);
+        Input depth(encoder.element(), "depth", 0);
+        encoder.play();
+        colour.push_gap_before_segment();
+        depth.push_gap_before_segment();
+        colour.feed(up_to(4));
+        depth.feed(up_to(4));
+        EXPECT_EQ(encoder.sizes().size(), 4U) << kind;
+        EXPECT_EQ(encoder.error(), "") << kind;
+        g_log_set_always_fatal(fatal);
+    }
 }
 
 TEST(FileInputs, a_stack_that_begins_late_or_ends_early_leaves_files_without_planes)
