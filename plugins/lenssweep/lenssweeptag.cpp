@@ -17,7 +17,13 @@
  * goes on to the next plane. Frames of a live source that were exposed while the lens moved are dropped, by
  * their timestamps, and settle-frames more. `v4l2src ! lenssweeptag lens=v4l2:/dev/video0 mode=step` sweeps a
  * camera whose driver can focus; such a lens has no unit, so planes have no power, and the largest value of
- * its control is the nearest plane.
+ * its control is the nearest plane, unless lens-profile gives its positions at two or more vergences.
+ *
+ * `libcamerasrc name=cam ! lenssweeptag lens=element:cam.lens-position mode=step near=8 far=0` sweeps a
+ * camera whose source moves its lens, some frames after it was asked. settle-frames is counted from the frame
+ * for which the property reads the plane. Where nobody knows when the lens rests, as with element: and v4l2:,
+ * it is held for eight frames more now and then, and a warning is posted if sharpness shows that it still
+ * moved at the label.
  *
  * With mode=sync the lens sweeps by itself, or in the hands of the FPGA (lens=fpga:/dev/i2c-1), and sync-line
  * has an edge whenever plane 0 is exposed. A frame is let through only if edges and frames agree on its
@@ -36,8 +42,10 @@
  */
 #include "lenssweeptag.h"
 
+#include "block_sharpness.h"
 #include "common/checked_properties.h"
 #include "common/running_time.h"
+#include "element_property.h"
 #include "sweep_tagger.h"
 
 #include <exception>
@@ -75,6 +83,7 @@ struct GstLensSweepTagState {
     /* Guarded by the sink pad's stream lock, while started. */
     std::unique_ptr<SweepTagger> tagger;
     guint64 frames = 0;
+    std::optional<GstVideoInfo> video; /* of frames whose sharpness can be measured */
 };
 
 struct _GstLensSweepTag {
@@ -99,7 +108,10 @@ static gboolean start(GstBaseTransform *transform)
     try {
         if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
             throw std::invalid_argument(*fault);
-        state.tagger = std::make_unique<SweepTagger>(settings);
+        state.tagger = std::make_unique<SweepTagger>(
+            settings, [self](const std::string &element, const std::string &property) {
+                return find_element_property(GST_ELEMENT(self), element, property);
+            });
         GST_INFO_OBJECT(self, "%u planes of %g to %g dioptres (NAN: not known), lens %s",
                         state.tagger->planes(), state.tagger->power(0),
                         state.tagger->power(state.tagger->planes() - 1), settings.lens.c_str());
@@ -121,6 +133,34 @@ static gboolean stop(GstBaseTransform *transform)
     return TRUE;
 }
 
+/* Frames of 8 bits a sample in the memory of this machine. */
+static std::optional<GstVideoInfo> measurable_video(const GstCaps *caps)
+{
+    GstVideoInfo info;
+    const GstStructure *structure = gst_caps_get_structure(caps, 0);
+    const GstCapsFeatures *features = gst_caps_get_features(caps, 0);
+    const bool plain = gst_structure_has_name(structure, "video/x-raw") &&
+                       gst_caps_features_contains(features, GST_CAPS_FEATURE_MEMORY_SYSTEM_MEMORY) &&
+                       gst_video_info_from_caps(&info, caps);
+    const bool measurable = plain && GST_VIDEO_INFO_COMP_DEPTH(&info, 0) == 8;
+    return measurable ? std::optional(info) : std::nullopt;
+}
+
+static std::vector<double> sharpness_of(const GstVideoInfo &info, GstBuffer *buffer)
+{
+    GstVideoFrame frame;
+    if (!gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ))
+        return {};
+    const PictureView picture{static_cast<const guint8 *>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)),
+                              static_cast<unsigned>(GST_VIDEO_FRAME_COMP_WIDTH(&frame, 0)),
+                              static_cast<unsigned>(GST_VIDEO_FRAME_COMP_HEIGHT(&frame, 0)),
+                              static_cast<size_t>(GST_VIDEO_FRAME_COMP_STRIDE(&frame, 0)),
+                              static_cast<size_t>(GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, 0))};
+    auto sharpness = block_sharpness(picture);
+    gst_video_frame_unmap(&frame);
+    return sharpness;
+}
+
 static std::optional<uint64_t> frame_period(const GstCaps *caps)
 {
     gint numerator = 0;
@@ -135,6 +175,7 @@ static gboolean set_caps(GstBaseTransform *transform, GstCaps *caps, GstCaps *)
 {
     auto *self = GST_LENS_SWEEP_TAG(transform);
     GST_INFO_OBJECT(self, "caps %" GST_PTR_FORMAT, caps);
+    self->state->video = measurable_video(caps);
     try {
         self->state->tagger->set_period(frame_period(caps));
     } catch (const std::exception &error) {
@@ -216,7 +257,9 @@ static std::optional<PlaneLabel> find_label(GstLensSweepTag *self, GstBuffer *bu
     GST_OBJECT_LOCK(self);
     const std::stop_token stop = self->state->stop.get_token();
     GST_OBJECT_UNLOCK(self);
-    const auto label = tagger.label(trace, time, stop);
+    const auto label = tagger.label(trace, time, stop, [self, buffer] {
+        return self->state->video ? sharpness_of(*self->state->video, buffer) : std::vector<double>{};
+    });
     GST_LOG_OBJECT(self, "frame of %" GST_TIME_FORMAT " is plane %d",
                    GST_TIME_ARGS(time.value_or(GST_CLOCK_TIME_NONE)),
                    label ? static_cast<int>(label->plane) : -1);

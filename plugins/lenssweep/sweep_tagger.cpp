@@ -2,8 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sweep_tagger.h"
 
-#include "lens/open_lens.h"
-
 #include <cmath>
 #include <stdexcept>
 
@@ -20,9 +18,11 @@ dff::SweepPlan plan_of(const SweepProperties &sweep)
 
 } // namespace
 
-SweepTagger::SweepTagger(const TagSettings &settings) : settings_(settings), plan_(plan_of(settings.sweep))
+SweepTagger::SweepTagger(const TagSettings &settings, const FindProperty &find_property)
+    : settings_(settings), plan_(plan_of(settings.sweep))
 {
-    auto lens = dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile});
+    auto lens =
+        dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile, nullptr, find_property});
     if (settings.mode == GST_LENS_SWEEP_TAG_MODE_STEP) {
         open_step(std::move(lens));
     } else if (settings.mode == GST_LENS_SWEEP_TAG_MODE_SYNC) {
@@ -38,8 +38,8 @@ SweepTagger::SweepTagger(const TagSettings &settings) : settings_(settings), pla
 void SweepTagger::open_step(std::unique_ptr<dff::Lens> lens)
 {
     if (!dynamic_cast<dff::SteppedLens *>(lens.get()))
-        throw std::invalid_argument("mode=step needs a lens that can be moved, as lens=v4l2:/dev/video0 or "
-                                    "lens=max14574:/dev/i2c-1");
+        throw std::invalid_argument("mode=step needs a lens that can be moved, as lens=v4l2:/dev/video0, "
+                                    "lens=element:cam.lens-position or lens=max14574:/dev/i2c-1");
     lens->prepare({plan_});
     lens->start();
     std::unique_ptr<dff::SteppedLens> stepped(dynamic_cast<dff::SteppedLens *>(lens.release()));
@@ -77,13 +77,14 @@ void SweepTagger::restart()
 }
 
 std::optional<PlaneLabel> SweepTagger::label(const FrameTrace &trace, std::optional<uint64_t> time_ns,
-                                             const std::stop_token &stop)
+                                             const std::stop_token &stop,
+                                             const std::function<StepTagger::Sharpness()> &sharpness)
 {
     if (cycle_)
         return cycle_->label(trace);
     if (time_ns && sync_)
         *time_ns -= settings_.timestamp_delay_ns;
-    const auto label = step_ ? step_->label(time_ns, stop) : sync_->label(time_ns);
+    const auto label = step_ ? step_->label(time_ns, stop, sharpness) : sync_->label(time_ns);
     unlabelled_ = label || stop.stop_requested() ? 0 : unlabelled_ + 1;
     untimed_ = time_ns ? 0 : untimed_ + 1;
     return label;
@@ -96,6 +97,8 @@ std::string SweepTagger::warning()
             Cause::LostPlace,
             "Frames are missing and nothing says how many; the planes may be labelled wrongly from "
             "here on. Use a source that numbers its frames or gives them times.");
+    if (step_ && step_->lag())
+        return tell_once(Cause::StillMoves, step_warning());
     if (unlabelled_ < patience_sweeps * plan_.planes() + settings_.settle_frames)
         return "";
     if (step_)
@@ -119,6 +122,16 @@ std::string SweepTagger::tell_once(Cause cause, const std::string &text)
         return "";
     told_ |= bit;
     return text;
+}
+
+std::string SweepTagger::step_warning() const
+{
+    return "Frames are labelled before the lens has come to rest: held at a plane, their sharpness goes on "
+           "to "
+           "change by " +
+           std::to_string(std::lround(100 * step_->lag().value_or(0))) +
+           " % of what a plane changes. Set settle-frames to more than " +
+           std::to_string(settings_.settle_frames) + ".";
 }
 
 std::string SweepTagger::sync_warning() const

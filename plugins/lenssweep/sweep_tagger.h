@@ -3,6 +3,7 @@
 #pragma once
 
 #include "frame_cycle.h"
+#include "lens/open_lens.h"
 #include "step_tagger.h"
 #include "sync_tagger.h"
 #include "tag_settings.h"
@@ -15,9 +16,11 @@
 /* Labels frames as the mode of lenssweeptag says, with the lens and the line that it needs. */
 class SweepTagger {
 public:
-    /* Opens lens and line. Throws std::invalid_argument for settings that cannot be used, dff::LensError and
-     * dff::LineError for devices. */
-    explicit SweepTagger(const TagSettings &settings);
+    using FindProperty = decltype(dff::LensSurroundings::find_property);
+
+    /* Opens lens and line; `find_property` finds that of lens=element:. Throws std::invalid_argument for
+     * settings that cannot be used, dff::LensError and dff::LineError for devices. */
+    SweepTagger(const TagSettings &settings, const FindProperty &find_property);
 
     /* The time between two frames of the stream, if it is known. A sequencer of ours begins to sweep; throws
      * std::invalid_argument if it cannot keep that time, and dff::LensError. */
@@ -27,9 +30,11 @@ public:
     void restart();
 
     /* The label of a frame, or nothing if it is to be dropped; `time_ns` is its timestamp on CLOCK_MONOTONIC.
-     * A wait for the lens ends when `stop` is requested. Throws dff::LensError and dff::LineError. */
+     * A wait for the lens ends when `stop` is requested; `sharpness` is that of the frame, as StepTagger asks
+     * for it. Throws dff::LensError and dff::LineError. */
     std::optional<PlaneLabel> label(const FrameTrace &trace, std::optional<uint64_t> time_ns,
-                                    const std::stop_token &stop);
+                                    const std::stop_token &stop,
+                                    const std::function<StepTagger::Sharpness()> &sharpness);
 
     /* What the user must be told after the last frame, once for each cause; mostly empty. */
     std::string warning();
@@ -43,12 +48,13 @@ public:
     int code(unsigned plane) const;
 
 private:
-    enum class Cause { LostPlace, NeverRests, Untimed, NoEdges, Misfit };
+    enum class Cause { LostPlace, NeverRests, StillMoves, Untimed, NoEdges, Misfit };
 
     std::string tell_once(Cause cause, const std::string &text);
     void open_step(std::unique_ptr<dff::Lens> lens);
     void open_sync(std::unique_ptr<dff::Lens> lens);
     std::string sync_warning() const;
+    std::string step_warning() const;
 
     TagSettings settings_;
     dff::SweepPlan plan_;

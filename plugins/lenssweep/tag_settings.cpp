@@ -58,19 +58,21 @@ void install_tag_properties(GObjectClass *klass)
                                                       flags));
     install_string(
         klass, PROP_LENS, "lens", "Lens",
-        "The lens that is moved (step) or started (sync): max14574:/dev/i2c-1@0x77, v4l2:/dev/video0, "
-        "fpga:/dev/i2c-1@0x3c, or none",
+        "The lens that is moved (step) or started (sync): element:cam.lens-position, v4l2:/dev/video0, "
+        "max14574:/dev/i2c-1@0x77, fpga:/dev/i2c-1@0x3c, or none",
         defaults.lens.c_str());
     install_string(
         klass, PROP_LENS_PROFILE, "lens-profile", "Lens profile",
-        "YAML file that gives the voltages of a liquid lens; empty: nominal Varioptic C-C-39N0-250",
+        "YAML file that gives the voltages of a liquid lens (empty: nominal Varioptic C-C-39N0-250), or the "
+        "positions of another lens at two or more vergences",
         defaults.lens_profile.c_str());
     g_object_class_install_property(
         klass, PROP_SETTLE_FRAMES,
         dff::checked_at_start(g_param_spec_uint(
             "settle-frames", "Settle frames",
-            "mode=step: frames dropped after each move in addition to those known to have seen it", 0, 1000,
-            defaults.settle_frames, flags)));
+            "mode=step: frames dropped after each move in addition to those known to have seen it; with "
+            "lens=element: they are counted from the frame for which the camera says that its lens is there",
+            0, 1000, defaults.settle_frames, flags)));
     install_string(klass, PROP_SYNC_LINE, "sync-line", "Sync line",
                    "mode=sync: the GPIO line with an edge at each plane 0, by name or as gpiochip0:5",
                    defaults.sync_line.c_str());

@@ -9,7 +9,7 @@
 
 Each must end by itself with status 0, and neither warn nor complain. They run one after the other, in the order of the files,
 in one temporary folder, so that a pipeline can read what an earlier one wrote. One that names a device which is not here is
-skipped.
+skipped, and so is one with libcamerasrc where there is no camera for it.
 """
 import os
 import pathlib
@@ -51,8 +51,14 @@ def files_of(path):
     return sorted(file for file in path.rglob('*') if file.suffix in ('.gst', '.md', '.c', '.cpp'))
 
 
+def has_element(name):
+    return subprocess.run(['gst-inspect-1.0', '--exists', name], stdout=subprocess.DEVNULL, check=False).returncode == 0
+
+
 def missing_device(command):
     """The first device file that the command names and this machine does not have, or None."""
+    if 'libcamerasrc' in command and not (os.path.exists('/dev/media0') and has_element('libcamerasrc')):
+        return 'camera of libcamera'
     return next((path for path in re.findall(r'/dev/[\w/-]+', command) if not os.path.exists(path)), None)
 
 

@@ -246,6 +246,18 @@ bool AravisCamera::is_integer(const std::string &feature)
     return ARV_IS_GC_INTEGER(node) && !ARV_IS_GC_FLOAT(node);
 }
 
+std::string AravisCamera::unit(const std::string &feature)
+{
+    const std::lock_guard lock(mutex_);
+    ArvGcNode *node = arv_device_get_feature(arv_camera_get_device(camera_.get()), feature.c_str());
+    const char *unit = nullptr;
+    if (ARV_IS_GC_FLOAT(node))
+        unit = arv_gc_float_get_unit(ARV_GC_FLOAT(node));
+    else if (ARV_IS_GC_INTEGER(node))
+        unit = arv_gc_integer_get_unit(ARV_GC_INTEGER(node));
+    return unit ? unit : "";
+}
+
 double AravisCamera::get_float(const std::string &feature)
 {
     return call(feature, [&](ArvCamera *camera, GError **error) {

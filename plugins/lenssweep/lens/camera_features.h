@@ -21,6 +21,9 @@ public:
     /* Whether an existing feature is an IInteger (and no IFloat). */
     virtual bool is_integer(const std::string &feature) = 0;
 
+    /* What the camera says of an existing number's unit; mostly empty. */
+    virtual std::string unit(const std::string &feature) = 0;
+
     virtual double get_float(const std::string &feature) = 0;
     virtual void set_float(const std::string &feature, double value) = 0;
     virtual std::pair<double, double> float_range(const std::string &feature) = 0;

@@ -36,8 +36,8 @@ template <typename Access> auto access(Access use)
 
 } // namespace
 
-GenicamLens::GenicamLens(CameraFeatures &camera, std::string feature)
-    : camera_(camera), feature_(std::move(feature))
+GenicamLens::GenicamLens(CameraFeatures &camera, std::string feature, std::optional<FocusPoints> points)
+    : camera_(camera), feature_(std::move(feature)), points_(std::move(points))
 {
     access([this] {
         if (camera_.has(selector)) {
@@ -54,12 +54,34 @@ GenicamLens::GenicamLens(CameraFeatures &camera, std::string feature)
 
 bool GenicamLens::calibrated() const
 {
-    return feature_ == calibrated_feature;
+    return points_ || feature_ == calibrated_feature;
+}
+
+double GenicamLens::value_of(const SweepPlan &plan, unsigned plane, std::pair<double, double> range) const
+{
+    double value = 0;
+    if (points_)
+        value = points_->position(plan.power(plane));
+    else if (calibrated())
+        value = plan.power(plane);
+    else
+        value = std::lerp(range.first, range.second, relative_nearness(plan, plane));
+    return integer_ ? std::round(value) : value;
+}
+
+void GenicamLens::refuse(double value, std::pair<double, double> range)
+{
+    const std::string unit = access([this] { return camera_.unit(feature_); });
+    std::ostringstream text;
+    text << feature_ << " of the camera is " << range.first << " to " << range.second
+         << (unit.empty() ? "" : " " + unit) << ", not " << value
+         << (points_ ? ": the lens profile is of another lens" : ": set near and far");
+    throw std::invalid_argument(text.str());
 }
 
 void GenicamLens::prepare(const LensSweep &sweep)
 {
-    const auto [lowest, highest] = access([this]() -> std::pair<double, double> {
+    const auto range = access([this]() -> std::pair<double, double> {
         if (integer_) {
             return camera_.integer_range(feature_);
         }
@@ -67,17 +89,9 @@ void GenicamLens::prepare(const LensSweep &sweep)
     });
     std::vector<double> values;
     for (unsigned plane = 0; plane < sweep.plan.planes(); ++plane) {
-        values.push_back(calibrated() ? sweep.plan.power(plane)
-                                      : std::lerp(lowest, highest, relative_nearness(sweep.plan, plane)));
-        if (integer_) {
-            values.back() = std::round(values.back());
-        }
-        if (values.back() < lowest || values.back() > highest) {
-            std::ostringstream text;
-            text << feature_ << " of the camera is " << lowest << " to " << highest << ", not "
-                 << values.back();
-            throw std::invalid_argument(text.str());
-        }
+        values.push_back(value_of(sweep.plan, plane, range));
+        if (values.back() < range.first || values.back() > range.second)
+            refuse(values.back(), range);
     }
     require_different(values);
     values_ = std::move(values);

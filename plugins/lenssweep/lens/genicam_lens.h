@@ -4,19 +4,22 @@
 
 #include "camera_features.h"
 #include "lens.h"
+#include "optics/focus_points.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace dff {
 
 /* A lens that the camera itself moves, by the features of GenICam's category OpticControl (SFNC 2.5 and
- * later). FocalPower takes the plan's dioptres; any other feature, such as FocusStepper, is taken to be
- * larger for nearer, and its whole range holds the sweep, uncalibrated. Its safe state is where it is. */
+ * later). FocalPower takes the plan's dioptres, and any other feature, such as FocusStepper or a voltage,
+ * what the points of a profile say; without a profile it is taken to be larger for nearer, and its whole
+ * range holds the sweep, uncalibrated. Its safe state is where it is. */
 class GenicamLens : public SteppedLens {
 public:
     /* Throws LensError if the camera has no such feature. The camera outlives the lens. */
-    GenicamLens(CameraFeatures &camera, std::string feature);
+    GenicamLens(CameraFeatures &camera, std::string feature, std::optional<FocusPoints> points);
 
     void prepare(const LensSweep &sweep) override;
 
@@ -38,8 +41,12 @@ private:
     Readiness readiness(const std::string &status);
     bool wait_ready(const std::string &status, const std::stop_token &stop);
 
+    double value_of(const SweepPlan &plan, unsigned plane, std::pair<double, double> range) const;
+    [[noreturn]] void refuse(double value, std::pair<double, double> range);
+
     CameraFeatures &camera_;
     std::string feature_;
+    std::optional<FocusPoints> points_;
     bool integer_;
     std::vector<double> values_; /* of the feature, one a plane */
 };

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 
 namespace dff {
@@ -64,6 +65,13 @@ public:
     /* Waits until the lens rests at its plane. False if `stop` was requested before; throws LensError if the
      * lens does not come to rest within a time that is far too long for it. */
     virtual bool wait_settled(const std::stop_token &stop) = 0;
+
+    /* For a lens that moves while frames come: whether its camera says that frames have the plane by now.
+     * Nothing if it does not say. */
+    virtual std::optional<bool> at_plane() { return std::nullopt; }
+
+    /* Whether wait_settled() knows when the lens rests; if not, it is the user who says how long it moves. */
+    virtual bool knows_rest() const { return true; }
 };
 
 /* A lens in the hands of a sequencer, which triggers the camera and numbers sweeps. */

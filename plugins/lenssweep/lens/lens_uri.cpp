@@ -20,7 +20,7 @@ constexpr unsigned highest_address = 0x77;
 {
     throw std::invalid_argument("the lens \"" + text + "\" " + why +
                                 ". It is one of fpga:/dev/i2c-1@0x3c, max14574:/dev/i2c-1@0x77, "
-                                "genicam:FocalPower, v4l2:/dev/video0, none");
+                                "genicam:FocalPower, v4l2:/dev/video0, element:cam.lens-position, none");
 }
 
 /* Decimal, or hexadecimal after 0x. */
@@ -43,7 +43,7 @@ std::uint8_t parse_address(const std::string &text, std::string_view digits)
 LensUri parse_i2c(const std::string &text, LensKind kind, const std::string &rest, std::uint8_t address)
 {
     const auto at = rest.find('@');
-    LensUri uri{kind, rest.substr(0, at), address, {}};
+    LensUri uri{kind, rest.substr(0, at), address, {}, {}};
     if (at != std::string::npos) {
         uri.address = parse_address(text, std::string_view(rest).substr(at + 1));
     }
@@ -51,6 +51,16 @@ LensUri parse_i2c(const std::string &text, LensKind kind, const std::string &res
         refuse(text, "names no I2C bus");
     }
     return uri;
+}
+
+/* Names of elements may have points in them, those of properties have none. */
+LensUri parse_element(const std::string &text, const std::string &rest)
+{
+    const auto point = rest.rfind('.');
+    if (point == std::string::npos || point == 0 || point + 1 == rest.size()) {
+        refuse(text, "names no property of an element");
+    }
+    return {LensKind::Element, {}, 0, rest.substr(point + 1), rest.substr(0, point)};
 }
 
 } // namespace
@@ -73,13 +83,16 @@ LensUri LensUri::parse(const std::string &text)
         if (rest.empty()) {
             refuse(text, "names no feature of the camera");
         }
-        return {LensKind::GenICam, {}, 0, rest};
+        return {LensKind::GenICam, {}, 0, rest, {}};
     }
     if (scheme == "v4l2") {
         if (rest.empty()) {
             refuse(text, "names no video device");
         }
-        return {LensKind::V4l2, rest, 0, {}};
+        return {LensKind::V4l2, rest, 0, {}, {}};
+    }
+    if (scheme == "element") {
+        return parse_element(text, rest);
     }
     refuse(text, "is of no kind that is known");
 }

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "open_lens.h"
 
+#include "element_lens.h"
 #include "fpga_sweep_lens.h"
 #include "genicam_lens.h"
 #include "linux_i2c_bus.h"
@@ -35,13 +36,19 @@ LensProfile load_profile(const std::string &file)
                              "/varioptic-C-C-39N0-250.yaml");
 }
 
+std::optional<FocusPoints> load_points(const LensSurroundings &surroundings)
+{
+    if (surroundings.profile.empty())
+        return std::nullopt;
+    return FocusPoints::load(surroundings.profile);
+}
+
 } // namespace
 
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings)
 {
-    const bool has_profile = uri.kind == LensKind::Fpga || uri.kind == LensKind::Max14574;
-    if (!surroundings.profile.empty() && !has_profile)
-        throw std::invalid_argument("lens-profile goes with lens=fpga: and lens=max14574: only");
+    if (!surroundings.profile.empty() && uri.kind == LensKind::None)
+        throw std::invalid_argument("lens-profile goes with a lens that is moved, and lens=none is not");
     switch (uri.kind) {
     case LensKind::Fpga:
         return std::make_unique<FpgaSweepLens>(std::make_unique<LinuxI2cBus>(uri.device, uri.address),
@@ -54,9 +61,15 @@ std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surr
             throw LensError("the lens genicam:" + uri.feature +
                             " is in a camera that lenssweepsrc has opened");
         }
-        return std::make_unique<GenicamLens>(*surroundings.features, uri.feature);
+        return std::make_unique<GenicamLens>(*surroundings.features, uri.feature, load_points(surroundings));
     case LensKind::V4l2:
-        return std::make_unique<V4l2Lens>(uri.device);
+        return std::make_unique<V4l2Lens>(uri.device, load_points(surroundings));
+    case LensKind::Element:
+        if (!surroundings.find_property)
+            throw LensError("the lens element:" + uri.element + "." + uri.feature +
+                            " is moved by lenssweeptag, which stands in the pipeline of that element");
+        return std::make_unique<ElementLens>(surroundings.find_property(uri.element, uri.feature),
+                                             load_points(surroundings));
     case LensKind::None:
         break;
     }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "lens.h"
+#include "lens_property.h"
 #include "lens_uri.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -14,13 +16,18 @@ class CameraFeatures;
 
 /* What a lens may need besides its URI. */
 struct LensSurroundings {
-    std::string profile; /* file of a LensProfile; empty for the one shipped (fpga, max14574) */
+    /* File of a LensProfile (fpga, max14574; empty for the one shipped) or of FocusPoints (element, v4l2). */
+    std::string profile;
     CameraFeatures *features = nullptr; /* of the camera, for genicam; it outlives the lens */
+
+    /* For element: the property of the element with this name; throws LensError if there is none. */
+    std::function<std::unique_ptr<LensProperty>(const std::string &element, const std::string &property)>
+        find_property = {};
 };
 
-/* Opens a lens; what comes is a SequencedLens (fpga), a SteppedLens (max14574, genicam, v4l2), or a Lens that
- * nobody moves (none). Throws LensError if the device is missing or something else, std::invalid_argument for
- * a profile that cannot be used, or given for a lens that has none. */
+/* Opens a lens; what comes is a SequencedLens (fpga), a SteppedLens (max14574, genicam, v4l2, element), or a
+ * Lens that nobody moves (none). Throws LensError if the device is missing or something else,
+ * std::invalid_argument for a profile that cannot be used, or given for a lens that has none. */
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings);
 
 } // namespace dff

@@ -5,7 +5,6 @@
 #include "optics/sweep_plan.h"
 
 #include <algorithm>
-#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -21,7 +20,7 @@ inline double relative_nearness(const SweepPlan &plan, unsigned plane)
 /* Throws std::invalid_argument if the lens would not move between two planes. */
 inline void require_different(const std::vector<double> &positions)
 {
-    if (std::adjacent_find(positions.begin(), positions.end(), std::less_equal<>()) != positions.end()) {
+    if (std::adjacent_find(positions.begin(), positions.end()) != positions.end()) {
         throw std::invalid_argument("two planes fall on one position of the lens: ask for fewer planes");
     }
 }

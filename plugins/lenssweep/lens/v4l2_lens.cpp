@@ -8,6 +8,8 @@
 #include <cmath>
 #include <fcntl.h>
 #include <linux/videodev2.h>
+#include <sstream>
+#include <stdexcept>
 #include <sys/ioctl.h>
 #include <system_error>
 #include <unistd.h>
@@ -37,10 +39,35 @@ bool query(int descriptor, std::uint32_t id, v4l2_queryctrl &found)
     return control(descriptor, VIDIOC_QUERYCTRL, found) && !(found.flags & V4L2_CTRL_FLAG_DISABLED);
 }
 
+/* The nearest position that the control has; its steps begin at its minimum. */
+double stepped(const v4l2_queryctrl &focus, double position)
+{
+    const int step = std::max(focus.step, 1);
+    const double nearest = focus.minimum + step * std::floor((position - focus.minimum) / step + 0.5);
+    return nearest > focus.maximum ? nearest - step : nearest;
+}
+
+double relative_position(const v4l2_queryctrl &focus, double nearness)
+{
+    return stepped(focus, focus.minimum + nearness * (focus.maximum - focus.minimum));
+}
+
+double measured_position(const v4l2_queryctrl &focus, double position)
+{
+    if (!(position >= focus.minimum && position <= focus.maximum)) {
+        std::ostringstream text;
+        text << "focus_absolute is " << focus.minimum << " to " << focus.maximum << ", not " << position
+             << ": the lens profile is of another lens";
+        throw std::invalid_argument(text.str());
+    }
+    return stepped(focus, position);
+}
+
 } // namespace
 
-V4l2Lens::V4l2Lens(std::string device)
-    : device_(std::move(device)), descriptor_(open(device_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC))
+V4l2Lens::V4l2Lens(std::string device, std::optional<FocusPoints> points)
+    : device_(std::move(device)), points_(std::move(points)),
+      descriptor_(open(device_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC))
 {
     if (descriptor_ < 0) {
         throw LensError("cannot open the lens " + device_ + ": " + reason() +
@@ -76,15 +103,10 @@ void V4l2Lens::prepare(const LensSweep &sweep)
     if (!query(descriptor_, V4L2_CID_FOCUS_ABSOLUTE, focus)) {
         throw LensError("cannot ask " + device_ + " for the range of focus_absolute: " + reason());
     }
-    const int step = std::max(focus.step, 1);
     std::vector<double> positions;
-    for (unsigned plane = 0; plane < sweep.plan.planes(); ++plane) {
-        const double wanted = relative_nearness(sweep.plan, plane) * (focus.maximum - focus.minimum);
-        positions.push_back(focus.minimum + step * std::floor(wanted / step + 0.5));
-        if (positions.back() > focus.maximum) {
-            positions.back() -= step;
-        }
-    }
+    for (unsigned plane = 0; plane < sweep.plan.planes(); ++plane)
+        positions.push_back(points_ ? measured_position(focus, points_->position(sweep.plan.power(plane)))
+                                    : relative_position(focus, relative_nearness(sweep.plan, plane)));
     require_different(positions);
     positions_ = std::move(positions);
 }

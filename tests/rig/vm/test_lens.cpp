@@ -7,6 +7,7 @@
 #include "rig.h"
 
 #include <algorithm>
+#include <fstream>
 #include <gtest/gtest.h>
 
 using namespace std::chrono_literals;
@@ -134,4 +135,21 @@ TEST(VideoLens, is_moved_over_its_range_after_autofocus_is_switched_off_and_give
                      std::invalid_argument); /* 19 positions */
     }
     EXPECT_NE(autofocus().find("continuous: 1"), std::string::npos) << autofocus();
+}
+
+TEST(VideoLens, points_of_a_profile_say_where_it_goes)
+{
+    const std::string path = "/tmp/dff-points.yaml";
+    std::ofstream(path) << "%YAML:1.0\n---\nlens: \"rig\"\nvergence: [ 0, 2 ]\nposition: [ 200, 61 ]\n";
+    const auto lens = dff::open_lens(dff::LensUri::parse("v4l2:/dev/video0"), {path});
+    EXPECT_TRUE(lens->calibrated());
+    lens->prepare({dff::SweepPlan::even(3, 2.0, 0.0)});
+    EXPECT_EQ(lens->code(0), 60); /* its steps are of 10 */
+    EXPECT_EQ(lens->code(1), 130);
+    EXPECT_EQ(lens->code(2), 200);
+    EXPECT_THROW(lens->prepare({dff::SweepPlan::even(3, 3.0, 0.0)}), std::invalid_argument);
+
+    std::ofstream(path) << "%YAML:1.0\n---\nlens: \"another\"\nvergence: [ 0, 2 ]\nposition: [ 0, 1023 ]\n";
+    const auto other = dff::open_lens(dff::LensUri::parse("v4l2:/dev/video0"), {path});
+    EXPECT_THROW(other->prepare({dff::SweepPlan::even(3, 2.0, 0.0)}), std::invalid_argument);
 }

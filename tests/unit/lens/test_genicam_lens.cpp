@@ -3,9 +3,12 @@
 #include "genicam_lens.h"
 
 #include <deque>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <thread>
+#include <unistd.h>
 
 using namespace std::chrono_literals;
 
@@ -27,6 +30,7 @@ public:
                std::find(commands.begin(), commands.end(), feature) != commands.end();
     }
     bool is_integer(const std::string &feature) override { return integers.contains(feature); }
+    std::string unit(const std::string &) override { return "1/m"; }
     double get_float(const std::string &) override { return 0; }
     void set_float(const std::string &feature, double value) override
     {
@@ -80,7 +84,7 @@ TEST(GenicamLens, focal_power_takes_the_plans_dioptres)
 {
     FakeCamera camera;
     camera.floats["FocalPower"] = {-2.0, 6.0};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     EXPECT_TRUE(lens.calibrated());
     lens.prepare(sweep(3, 5.0, 0.0));
     lens.start();
@@ -94,7 +98,7 @@ TEST(GenicamLens, stepper_is_swept_over_its_whole_range)
 {
     FakeCamera camera;
     camera.integers["FocusStepper"] = {10, 20};
-    dff::GenicamLens lens(camera, "FocusStepper");
+    dff::GenicamLens lens(camera, "FocusStepper", {});
     EXPECT_FALSE(lens.calibrated());
     lens.prepare(sweep(3, 5.0, 0.0));
     EXPECT_EQ(lens.code(0), 20);
@@ -112,7 +116,7 @@ TEST(GenicamLens, optics_are_selected_and_initialised_before_the_first_move)
     camera.statuses["OpticControllerSelector"] = {"OpticController0", "OpticController1"};
     camera.statuses["OpticControllerStatus"] = {"NotInitialized", "NotInitialized", "Busy", "Ready"};
     camera.commands = {"OpticControllerInitialize"};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     lens.prepare(sweep(2, 5.0, 0.0));
     lens.start();
     EXPECT_EQ(camera.done, (std::vector<std::string>{"OpticControllerSelector=OpticController0",
@@ -126,7 +130,7 @@ TEST(GenicamLens, focus_status_is_asked_until_the_lens_rests)
     FakeCamera camera;
     camera.floats["FocalPower"] = {0.0, 6.0};
     camera.statuses["FocusStatus"] = {"Busy", "NotReady", "Ready", "Busy"};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     EXPECT_TRUE(lens.wait_settled({}));
     EXPECT_EQ(camera.statuses["FocusStatus"].size(), 1U);
 }
@@ -136,7 +140,7 @@ TEST(GenicamLens, waiting_can_be_interrupted)
     FakeCamera camera;
     camera.floats["FocalPower"] = {0.0, 6.0};
     camera.statuses["FocusStatus"] = {"Busy"};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     std::stop_source stop;
     const auto begin = std::chrono::steady_clock::now();
     std::jthread stopper([&stop] {
@@ -152,7 +156,7 @@ TEST(GenicamLens, lens_that_has_failed_is_an_error)
     FakeCamera camera;
     camera.floats["FocalPower"] = {0.0, 6.0};
     camera.statuses["FocusStatus"] = {"Busy", "Error"};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_THROW(lens.wait_settled({}), dff::LensError);
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s); /* no need to wait on */
@@ -162,7 +166,7 @@ TEST(GenicamLens, camera_that_does_not_answer_is_an_error)
 {
     FakeCamera camera;
     camera.floats["FocalPower"] = {0.0, 6.0};
-    dff::GenicamLens lens(camera, "FocalPower");
+    dff::GenicamLens lens(camera, "FocalPower", {});
     lens.prepare(sweep(2, 5.0, 0.0));
     camera.broken = true;
     try {
@@ -177,9 +181,51 @@ TEST(GenicamLens, missing_feature_is_an_error_that_says_where_to_look)
 {
     FakeCamera camera;
     try {
-        dff::GenicamLens lens(camera, "FocalPower");
+        dff::GenicamLens lens(camera, "FocalPower", {});
         FAIL() << "no error";
     } catch (const dff::LensError &error) {
         EXPECT_NE(std::string(error.what()).find("OpticControl"), std::string::npos);
+    }
+}
+
+namespace {
+
+std::optional<dff::FocusPoints> points_of(const std::string &lines)
+{
+    const auto path =
+        std::filesystem::temp_directory_path() / ("dff-genicam-" + std::to_string(getpid()) + ".yaml");
+    std::ofstream(path) << "%YAML:1.0\n---\nlens: \"theirs\"\n" << lines;
+    auto points = dff::FocusPoints::load(path.string());
+    std::filesystem::remove(path);
+    return points;
+}
+
+} // namespace
+
+TEST(GenicamLens, raw_codes_come_by_the_points_of_a_profile)
+{
+    FakeCamera camera;
+    camera.integers["LensVoltage"] = {0, 1000};
+    dff::GenicamLens lens(camera, "LensVoltage", points_of("vergence: [ 0, 10 ]\nposition: [ 800, 301 ]\n"));
+    EXPECT_TRUE(lens.calibrated());
+    lens.prepare(sweep(3, 10.0, 0.0));
+    EXPECT_EQ(lens.code(0), 301);
+    EXPECT_EQ(lens.code(1), 551);
+    EXPECT_EQ(lens.code(2), 800);
+    EXPECT_THROW(lens.prepare(sweep(3, 11.0, 0.0)), std::invalid_argument); /* beyond the points */
+}
+
+TEST(GenicamLens, range_is_told_with_the_cameras_unit)
+{
+    FakeCamera camera;
+    camera.floats["FocalPower"] = {-2.0, 6.0};
+    dff::GenicamLens lens(camera, "FocalPower", {});
+    try {
+        lens.prepare(sweep(3, 7.0, 0.0));
+        ADD_FAILURE();
+    } catch (const std::invalid_argument &error) {
+        EXPECT_NE(std::string(error.what()).find("FocalPower of the camera is -2 to 6 1/m, not 7"),
+                  std::string::npos)
+            << error.what();
     }
 }
