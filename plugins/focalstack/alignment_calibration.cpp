@@ -18,8 +18,20 @@ constexpr Range pixels{-65536.0, 65536.0};
 constexpr Range zoom{0.1, 10.0};
 constexpr Range degrees{-360.0, 360.0};
 
+/* A homography may not turn the picture over, nor take its centre to infinity. */
+PlaneWarp homography_of(const FileEntries &plane)
+{
+    const std::vector<double> numbers = plane.numbers("matrix", 9, 9, pixels);
+    const cv::Matx33d matrix(numbers.data());
+    if (matrix(2, 2) == 0.0 || !(cv::determinant(matrix * (1.0 / matrix(2, 2))) > 0.0))
+        plane.fail("a matrix cannot be undone");
+    return PlaneWarp(matrix);
+}
+
 PlaneWarp warp_of(const FileEntries &plane)
 {
+    if (plane.has("matrix"))
+        return homography_of(plane);
     const double scale = plane.number("scale", zoom);
     const double angle = plane.number("rotation", degrees) * std::numbers::pi / 180.0;
     return {scale * std::cos(angle), scale * std::sin(angle), plane.number("dx", pixels),

@@ -16,6 +16,7 @@ namespace dff {
  *                              right and down of its centre
  *     scale                    its zoom about the centre, 0.1 to 10
  *     rotation                 degrees, clockwise
+ *     matrix                   instead of these four: the homography, 9 numbers row by row
  *
  * which are what `stats` of focalstackalign tells after mode=estimate. */
 class AlignmentCalibration {

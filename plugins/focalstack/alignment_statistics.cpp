@@ -30,7 +30,7 @@ GstStructure *to_structure(const PlaneAlignment &plane)
     GstStructure *structure =
         gst_structure_new("plane", "dx", G_TYPE_DOUBLE, shift.x, "dy", G_TYPE_DOUBLE, shift.y, "scale",
                           G_TYPE_DOUBLE, plane.warp.scale(), "rotation", G_TYPE_DOUBLE, degrees, "trusted",
-                          G_TYPE_BOOLEAN, plane.trusted, nullptr);
+                          G_TYPE_BOOLEAN, plane.trusted, "blank", G_TYPE_BOOLEAN, plane.blank, nullptr);
 
     append_matrix(structure, plane.warp);
     return structure;

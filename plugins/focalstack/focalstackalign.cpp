@@ -406,7 +406,8 @@ void install_properties(GObjectClass *object_class)
      * picture of the middle plane lies in it: "dx" and "dy" (double), the shift of the centre in pixels,
      * right and down; "scale" (double), the zoom about the centre; "rotation" (double), degrees clockwise;
      * "matrix" (array of 9 doubles), the whole homography row by row, on pixels from the centre; "trusted"
-     * (boolean), whether this was found in the pictures.
+     * (boolean), whether this was found in the pictures; "blank" (boolean), whether it was not because there
+     * is nothing in the plane that could be matched.
      */
     g_object_class_install_property(
         object_class, property_stats,

@@ -57,7 +57,8 @@ void install_align_properties(GObjectClass *object_class)
         g_param_spec_string(
             "calibration", "Calibration",
             "File of mode=calibration (YAML): image_width, image_height, and planes, a list, nearest "
-            "first, of dx and dy (pixels), scale and rotation (degrees) as stats tells them",
+            "first, of dx and dy (pixels), scale and rotation (degrees), or of the matrix, as stats tells "
+            "them",
             "", settable));
     gst_type_mark_as_plugin_api(motion_model_get_type(), static_cast<GstPluginAPIFlags>(0));
     g_object_class_install_property(

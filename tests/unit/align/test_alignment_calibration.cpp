@@ -118,6 +118,15 @@ TEST(AlignmentCalibration, warps_are_for_any_size_of_the_picture)
     EXPECT_TRUE(half[1].trusted);
 }
 
+TEST(AlignmentCalibration, a_matrix_is_a_homography_for_any_size)
+{
+    const File file("planes:\n  - { matrix: [ 2, 0, 6, 0, 2, -2, 0.02, 0, 2 ] }\n");
+    const PlaneWarp half = AlignmentCalibration::load(file.name).alignments({80, 60}, 1).front().warp;
+    EXPECT_NEAR(half.apply({0, 0}).x, 1.5, 1e-9);
+    EXPECT_NEAR(half.apply({0, 0}).y, -0.5, 1e-9);
+    EXPECT_NEAR(half.apply({10, 0}).x, (20.0 + 3.0) / 1.2 / 2.0, 1e-9);
+}
+
 TEST(AlignmentCalibration, what_is_wrong_with_a_file_is_told)
 {
     expect_refused("/nonexistent.yml", "cannot be opened");
@@ -132,6 +141,9 @@ TEST(AlignmentCalibration, what_is_wrong_with_a_file_is_told)
                    "planes[0].scale is 0 and must be 0.1 to 10");
     expect_refused(File(plane("dx: 0, dy: 0, scale: 1, rotation: .inf")), "planes[0].rotation is inf");
     expect_refused(File(two_planes, "image_width: 1e9\nimage_height: 120\n"), "image_width is 1000000000");
+    expect_refused(File(plane("matrix: [ 1, 0, 0, 0, 1, 0 ]")), "planes[0].matrix");
+    expect_refused(File(plane("matrix: [ 1, 0, 0, 0, 1, 0, 0, 0, 0 ]")), "cannot be undone");
+    expect_refused(File(plane("matrix: [ 1, 0, 0, 1, 0, 0, 0, 0, 1 ]")), "cannot be undone");
     expect_refused(File("planes: 5\n"), "planes must be a list");
     expect_refused(File("planes: [ 5 ]\n"), "planes[0] has no named entries");
 }
