@@ -4,8 +4,8 @@
 #
 # pipelines/demo.sh          builds the plug-ins, sweeps the focus of a simulated camera, and leaves the all-in-focus
 #                            picture, the depth and a video of both in demo/
-# pipelines/demo.sh FOLDER   the same for photographs of one focus sweep: PNG, JPEG or TIFF, all of one size, the nearest
-#                            plane first as people count their names; aligned before anything else
+# pipelines/demo.sh FOLDER   builds too, and gives the pictures of one focus sweep in the folder to dff-stack: the same, the
+#                            nearest plane first as people count their names, and a video that rocks before the scene
 #
 # Installs what is missing if it is root, and says what to install if it is not.
 set -euo pipefail
@@ -16,7 +16,6 @@ cd "$(dirname "$0")/.."
 verdict="FAILED, see above"
 finish() {
     jobs -p | xargs -r kill 2>/dev/null || true # a pipeline that still runs when the demo is stopped
-    rm -rf demo/frames
     echo "demo: $verdict"
 }
 trap finish EXIT
@@ -55,15 +54,15 @@ seconds() {
         awk '{ print $1 * 3600 + $2 * 60 + $3 }'
 }
 
-# graph SOURCE BLEND: focal stacks from SOURCE through depth and all-in-focus, which leave at d. and c.
+# graph SOURCE: focal stacks from SOURCE through depth and all-in-focus, which leave at d. and c.
 graph() {
     echo "$1 ! tee name=s
         s. ! queue ! dffdepth ! tee name=d
         d. ! queue ! c.depth
-        s. ! queue ! c.stack  aifcompose name=c blend=$2"
+        s. ! queue ! c.stack  aifcompose name=c blend=linear"
 }
 
-# pictures VIDEO: the files of the demo, made from what leaves the graph; VIDEO goes between the two panels and the encoder.
+# pictures: the files of the demo, made from what leaves the graph.
 pictures() {
     local window=""
     if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
@@ -76,7 +75,7 @@ pictures() {
         a. ! queue ! videoscale ! p.sink_0  m. ! queue ! videoscale ! p.sink_1
         compositor name=p sink_0::width=$width sink_0::height=$height
             sink_1::xpos=$width sink_1::width=$width sink_1::height=$height !
-        $1 videoconvert ! tee name=v
+        videoconvert ! tee name=v
         v. ! queue ! vp8enc deadline=1 target-bitrate=4000000 ! webmmux ! filesink location=demo/side-by-side.webm
         $window"
 }
@@ -85,40 +84,22 @@ simulated_sweep() {
     local camera="lenssweeptestsrc num-buffers=$((planes * stacks)) planes=$planes rate=$rate seed=1"
     local raw="video/x-raw,format=I420,width=$width,height=$height"
     say "Measuring: $stacks simulated sweeps of $planes planes, ${width}x$height, to depth and all-in-focus"
-    launch "$(graph "$camera ! $raw ! focalstackmux" linear) ! fakesink  d. ! queue ! fakesink"
+    launch "$(graph "$camera ! $raw ! focalstackmux") ! fakesink  d. ! queue ! fakesink"
     result="$(awk "BEGIN { printf \"%.1f\", $stacks / $(seconds) }") stacks/s"
     say "$result"
     say "Recording the pictures and the video, with an object that moves"
-    launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux" linear) $(pictures "")"
-}
-
-# read_photographs: their frames to demo/frames, and what they are to width, height and planes.
-read_photographs() {
-    say "Looking at the photographs in $photos, the nearest focus first:"
-    local status=0
-    mkdir -p demo/frames
-    pipelines/photographs.py "$photos" demo/frames 2>demo/photographs.log || status=$?
-    [ $status -eq 0 ] ||
-        fail "$(tail -n 1 demo/photographs.log | grep . || echo "pipelines/photographs.py ended with status $status")"
-    read -r width height < <(sed -E 's/.*width=([0-9]+),height=([0-9]+).*/\1 \2/' demo/frames/caps)
-    planes=$(find demo/frames -name '[0-9][0-9]' | wc -l)
+    launch "$(graph "$camera motion=0.5 ! $raw ! focalstackmux") $(pictures)"
 }
 
 photographs() {
-    local size=${width}x$height caps
-    caps=$(cat demo/frames/caps)
-    # Panels of the video are at most 960 pixels wide, and even.
-    if [ "$width" -gt 960 ]; then
-        height=$((height * 960 / width)) width=960
-    fi
-    width=$((width / 2 * 2)) height=$((height / 2 * 2))
-
-    # Photographs lie farther apart in focus than the planes of a video sweep: hence blend=sharp.
-    say "Aligning $planes photographs of $size, then depth and all-in-focus"
-    launch "$(graph "multifilesrc location=demo/frames/%02d stop-index=$((planes - 1)) caps=$caps,framerate=$planes/1 !
-        lenssweeptag planes=$planes ! focalstackmux !
-        focalstackalign even-brightness=true" sharp) $(pictures "imagefreeze num-buffers=75 !")"
-    result="1 stack of $planes photographs"
+    local status=0
+    say "The pictures in $photos, the nearest focus first:"
+    {
+        pipelines/stack/dff-stack "$photos" -o demo/all-in-focus.png --depth-colours demo/depth.png \
+            --video demo/rocking.webm 2>&1 >&3 | tee demo/dff-stack.log >&2
+    } 3>&1 || status=$?
+    [ $status -eq 0 ] || fail "$(tail -n 1 demo/dff-stack.log | sed 's/^dff-stack: //' | grep . || echo "dff-stack ended with status $status")"
+    result="the pictures of one sweep"
 }
 
 [ $# -le 1 ] || fail "there are $# arguments; it takes one folder, in quotes if its name has spaces"
@@ -127,18 +108,19 @@ say "Checking that every package is installed"
 install_missing "${run_packages[@]}" "${build_packages[@]}" || fail "packages are missing"
 mkdir -p demo
 rm -rf demo/*
-[ -z "$photos" ] || read_photographs
 say "Building in build/"
 build build --buildtype=release -Dtests=disabled || fail "the build"
 enter build
 
+video=side-by-side.webm
 if [ -n "$photos" ]; then
     photographs
+    video=rocking.webm
 else
     simulated_sweep
 fi
 
-for file in all-in-focus.png depth.png side-by-side.webm; do
+for file in all-in-focus.png depth.png $video; do
     [ -s "demo/$file" ] || fail "demo/$file was not written"
     say "$PWD/demo/$file"
 done

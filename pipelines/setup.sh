@@ -6,7 +6,7 @@
 run_packages=(
     gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
     gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd
-    glib-networking python3-openimageio)
+    glib-networking python3-openimageio python3-numpy python3-gi gir1.2-gstreamer-1.0)
 build_packages=(
     build-essential pkg-config meson ninja-build
     libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgstrtspserver-1.0-dev gobject-introspection libgirepository1.0-dev

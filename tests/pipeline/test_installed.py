@@ -94,6 +94,16 @@ class Installed(unittest.TestCase):
         self.assert_two_sources(run(*program, *self.TWO_SOURCES, env=self.environment))
         self.assert_bad_sources_end_it(*program)
 
+    def test_dff_stack_finds_what_it_needs(self):
+        program = next(pathlib.Path(self.folder.name).rglob('bin/dff-stack'))
+        self.assertIn('EXIT STATUS', run(program, '--help', env=self.environment))
+        photos = pathlib.Path(self.folder.name, 'photos')
+        photos.mkdir()
+        run('gst-launch-1.0', 'lenssweeptestsrc', 'num-buffers=4', 'planes=4', '!', 'videoconvert', '!', 'pngenc', '!', 'multifilesink',
+            f'location={photos}/%d.png', env=self.environment)
+        run(program, photos, '-o', photos.parent / 'sharp.jpg', env=self.environment)
+        self.assertTrue((photos.parent / 'sharp.jpg').read_bytes().startswith(b'\xff\xd8'))
+
     def test_programs_that_name_their_interpreter_can_be_run(self):
         for folder in ('pipelines', 'docs'):
             for path in (SOURCE / folder).rglob('*'):

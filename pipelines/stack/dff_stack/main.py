@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""From what the user asks for to the files that they want."""
+import os
+import signal
+import sys
+
+import numpy as np
+
+from dff_stack import Unusable, alignment, arguments, cloud, depths, engine, listed, memory, order, results, slabs, solve, sweep, video
+from dff_stack.progress import Progress, spoken
+
+
+def list_pictures(pictures):
+    for number, picture in enumerate(pictures, 1):
+        print(f'   {number:2}  {picture}', flush=True)
+
+
+def fitting(found, look, say):
+    """How the pictures lie; those that fit the others by no warp are left out."""
+    aligned = alignment.estimate_most(look.lumas, look.factor, lambda lumas: engine.find_warps(lumas, say))
+    names = [picture.name for picture in found.pictures]
+    blank = [name for name, is_blank in zip(names, aligned.blank) if is_blank]
+    if blank:
+        say(f'   Nothing by which to align: {listed(blank)}; moved with the neighbours')
+    misfits = alignment.misfits(aligned)
+    if misfits:
+        words = listed([names[number] for number in sorted(misfits)])
+        if found.count - len(misfits) < 2:
+            raise Unusable(f'The pictures do not fit each other by any shift, turn, zoom or perspective: {words}. '
+                           f'--align off takes them as they are')
+        say(f'   Left out, since no shift, turn, zoom or perspective brings them onto the others: {words}')
+        found.leave_out(misfits)
+    return aligned.without(misfits).warps
+
+
+def warps_of(options, found, look, say, progress):
+    width, height = found.size
+    if options.align == 'off':
+        return [np.eye(3)] * found.count if options.even == 'on' else None
+    if options.use_alignment:
+        return alignment.load(options.use_alignment, width, height, found.count).warps
+    progress.begin(f'Aligning {found.count} pictures', 1)
+    return fitting(found, look, say)
+
+
+def micrometres(found, step_um):
+    """Positions of the stage where they are known."""
+    if step_um:
+        depths.take_step(found.pictures, step_um)
+
+
+def write(options, files, found, solved, warps, pixel_um):
+    width, height = found.size
+    description = (f'{found.count} pictures of a focus sweep, {found.pictures[0].name} to {found.pictures[-1].name}, '
+                   f'{"as they lie" if options.align == "off" else "aligned"}, method=volume, blend=sharp')
+    pixels = found.encoding.decode(solved.picture)
+    depth, unit, extent = depths.heights(solved.depth, found.pictures)
+    if options.output:
+        results.write_picture(files, options.output, pixels, found.pictures[0].spec, description)
+    if options.depth:
+        results.write_depth(files, options.depth, depth, unit, extent)
+    if options.depth_code:
+        results.write_depth_code(files, options.depth_code, depth, unit, extent)
+    if options.depth_colours:
+        code = results.code_of(solved.depth, 0, found.count - 1)
+        colours = engine.depth_colours(code, lambda text: None)
+        results.write_colours(files, options.depth_colours, colours, 'depth: warm is near, black is not known')
+    if options.index:
+        numbers = np.nan_to_num(np.round(solved.depth) + 1).astype(np.int64)
+        results.write_numbers(files, options.index, numbers, 'number of the picture in which a pixel is sharp, 0 is not known')
+    if options.confidence:
+        results.write_numbers(files, options.confidence, solved.confidence, '255 times the confidence of the depth')
+    if options.save_alignment:
+        names = [picture.name for picture in found.pictures]
+        files.begin(options.save_alignment).write_text(alignment.text_of(warps, width, height, names))
+    if options.cloud:
+        of_pixel, of_depth, words = cloud.scales(width, extent, unit, pixel_um)
+        cloud.write_ply(files.begin(options.cloud), depth, results.as_file_holds(pixels, '.jpg'), of_pixel, of_depth, words)
+
+
+    if options.video:
+        video.write(files.begin(options.video), results.as_file_holds(pixels, '.jpg'), solved.depth, found.count, lambda text: None)
+
+
+def process(options):
+    progress = Progress(quiet=options.quiet)
+    say = (lambda text: None) if options.quiet else progress.say
+    engine.start()
+    pictures, pixel_um = sweep.gather(options.pictures, options.order, options.far_first, say)
+    if not options.quiet:
+        list_pictures(pictures)
+    found = sweep.Sweep(pictures, engine.has_deep_colour(), options.preview)
+    if min(found.size) < 64:
+        raise Unusable(f'a quarter of {pictures[0].size} is too small: leave --preview out')
+    if found.loss:
+        say(f'   {found.loss}')
+    most = memory.to_use(options.memory)
+    first_plan = slabs.plan(found.count, *found.size, found.encoding, most, 0)
+    progress.begin(f'Reading {found.count} pictures of {pictures[0].size}', found.count)
+    look = found.look_through(first_plan.slabs[0][1], progress)
+    sweep.without_duplicates(found, look, say)
+    order.tell_of_doubts(found.pictures, look.thumbnails, say)
+    micrometres(found, options.step)
+    with results.together() as files:
+        warps = warps_of(options, found, look, say, progress)
+        del look
+        work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'))
+        solved = solve.solve(found, warps, work)
+        progress.begin('Writing', 1)
+        write(options, files, found, solved, warps, options.pixel_size or pixel_um)
+    progress.end()
+    say(f'== {found.count} pictures in {spoken(progress.seconds())}')
+
+
+def ended(signum, _):
+    raise KeyboardInterrupt
+
+
+def main(arguments_=None):
+    sys.stdout.reconfigure(errors='backslashreplace')  # names may hold any bytes
+    sys.stderr.reconfigure(errors='backslashreplace')
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, ended)
+    options = arguments.parse(arguments_)
+    try:
+        process(options)
+    except (Unusable, OSError, MemoryError, UnicodeError) as error:
+        print(f'\ndff-stack: {error or "there is not enough memory: see --memory"}', file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print('\ndff-stack: stopped; nothing was written', file=sys.stderr, flush=True)
+        os._exit(130)  # without waiting for the elements, which may be in the middle of a stack
+    return 0

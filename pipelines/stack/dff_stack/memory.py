@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""How much memory there is to use."""
+import pathlib
+import re
+
+from dff_stack import Unusable
+
+SHARE = 0.6  # of what is free
+UNITS = {'': 2 ** 30, 'K': 2 ** 10, 'M': 2 ** 20, 'G': 2 ** 30, 'T': 2 ** 40}
+
+
+def bytes_of(text):
+    """'6G', '6' or '6GiB', '800M'."""
+    match = re.fullmatch(r'([0-9]+(?:\.[0-9]+)?)\s*([KMGT]?)(?:i?B)?', text.strip(), re.IGNORECASE)
+    if not match or float(match[1]) <= 0:
+        raise ValueError(f'{text} is no amount of memory: write 6G or 800M')
+    return float(match[1]) * UNITS[match[2].upper()]
+
+
+def number_in(path):
+    try:
+        return int(pathlib.Path(path).read_text())
+    except (OSError, ValueError):  # 'max', or no such group
+        return None
+
+
+def free_bytes(meminfo='/proc/meminfo', group='/sys/fs/cgroup'):
+    """What this process could have: what the machine has free, and what its control group lets it have."""
+    available = re.search(r'^MemAvailable:\s+(\d+) kB', pathlib.Path(meminfo).read_text(), re.MULTILINE)
+    free = int(available[1]) * 1024 if available else 2 ** 31
+    limit, used = number_in(f'{group}/memory.max'), number_in(f'{group}/memory.current')
+    return min(free, max(limit - (used or 0), 0)) if limit else free
+
+
+def to_use(asked):
+    """Bytes, by --memory or by what is free."""
+    if asked is None:
+        return SHARE * free_bytes()
+    if asked > free_bytes():
+        raise Unusable(f'--memory asks for {asked / 2**30:.1f} GiB, and {free_bytes() / 2**30:.1f} GiB are free')
+    return asked

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""The pictures of a sweep: gathered, looked through once, and read again when their planes are due."""
+import dataclasses
+
+import numpy as np
+
+from dff_stack import Unusable, depths, encoding, listed, order, pictures
+
+SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
+THUMBNAIL = 32    # in which they are compared
+PREVIEW = 4       # times smaller
+
+
+def gather(paths, chosen_order, far_first, say):
+    """The pictures, nearest first, and the size of a pixel in micrometres where a file knows it."""
+    found, pixel_um = [], None
+    for path in pictures.files_of(paths):
+        pages = pictures.pages_of(path)
+        if len(pages) > 1:
+            pages, own = depths.place_pages(pages)
+            pixel_um = pixel_um or own
+        found += pages
+    if len(found) < 2:
+        raise Unusable(f'{listed(paths)} holds {len(found)} picture{"s" if len(found) != 1 else ""} that can be used; '
+                       f'a focus sweep has 2 or more')
+    found = order.nearest_first(found, chosen_order, far_first, say)
+    pictures.check_sizes(found)
+    return found, pixel_um
+
+
+@dataclasses.dataclass
+class Look:
+    """What a first look at all pictures told."""
+    lumas: list       # small ones of 8 bits
+    factor: int       # how many times smaller than the picture they are
+    thumbnails: list
+    white: float      # the brightest of all, of numbers with a point
+
+
+class Sweep:
+    """The pictures as the planes of a stack."""
+
+    def __init__(self, found, has_deep_colour, preview):
+        self.pictures = found
+        self.has_deep_colour = has_deep_colour
+        self.shrink = PREVIEW if preview else 1
+        self.encoding, self.loss = encoding.encoding_of(found, has_deep_colour)
+        self.kept = {}
+
+    @property
+    def count(self):
+        return len(self.pictures)
+
+    @property
+    def size(self):
+        return self.pictures[0].width // self.shrink, self.pictures[0].height // self.shrink
+
+    def pixels(self, picture):
+        found = picture.pixels(self.encoding.read_as)
+        return found if self.shrink == 1 else smaller(found, self.shrink)
+
+    def read(self, number, keep=False):
+        """A frame of the stack. It stays in memory if it is wanted again."""
+        picture = self.pictures[number]
+        frame = self.kept.pop(picture, None)
+        if frame is None:
+            frame = self.encoding.encode(self.pixels(picture))
+        if keep:
+            self.kept[picture] = frame
+        return frame
+
+    def look_through(self, keep, progress):
+        """Reads every picture. The first `keep` frames stay in memory, since they are wanted first."""
+        look = Look([], 1, [], 1e-9)
+        for number, picture in enumerate(self.pictures):
+            pixels = self.pixels(picture)
+            look.factor = max(1, max(pixels.shape[:2]) // SMALL)
+            luma = encoding.shrunk_luma(pixels, SMALL)
+            if self.encoding.is_float:
+                luma = np.nan_to_num(luma, posinf=0.0)
+                look.white = max(look.white, finite_maximum(pixels))
+                look.lumas.append(np.sqrt(np.maximum(luma, 0)))
+            else:
+                look.lumas.append(np.round(luma * (255 / self.encoding.largest)).astype(np.uint8))
+                if number < keep:
+                    self.kept[picture] = self.encoding.encode(pixels)
+            progress.step()
+        if self.encoding.is_float:
+            self.encoding = dataclasses.replace(self.encoding, white=look.white)
+            look.lumas = [np.round(luma * (255 / np.sqrt(look.white))).clip(0, 255).astype(np.uint8) for luma in look.lumas]
+        look.thumbnails = [encoding.shrunk_luma(luma[:, :, None], THUMBNAIL) for luma in look.lumas]
+        return look
+
+    def leave_out(self, numbers):
+        for number in numbers:
+            self.kept.pop(self.pictures[number], None)
+        self.pictures = [picture for number, picture in enumerate(self.pictures) if number not in numbers]
+
+
+def finite_maximum(pixels):
+    return float(np.max(pixels, where=np.isfinite(pixels), initial=0.0))
+
+
+def smaller(pixels, factor):
+    """Means of squares."""
+    rows, columns = pixels.shape[0] // factor, pixels.shape[1] // factor
+    squares = pixels[:rows * factor, :columns * factor].reshape(rows, factor, columns, factor, -1)
+    means = squares.mean((1, 3), dtype=np.float32)
+    return means if pixels.dtype.kind == 'f' else np.round(means).astype(pixels.dtype)
+
+
+def without_duplicates(sweep, look, say):
+    """Leaves out what is there twice."""
+    twice = order.duplicates([order.fingerprint(luma) for luma in look.lumas])
+    for number, first in twice:
+        say(f'   {sweep.pictures[number].name} is the same picture as {sweep.pictures[first].name}: it is taken once')
+    numbers = {number for number, _ in twice}
+    if sweep.count - len(numbers) < 2:
+        raise Unusable('all pictures are the same; a focus sweep has 2 or more that differ')
+    sweep.leave_out(numbers)
+    for values in (look.lumas, look.thumbnails):
+        values[:] = [value for number, value in enumerate(values) if number not in numbers]

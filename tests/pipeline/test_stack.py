@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""test_stack.py SOURCE_ROOT: dff-stack as a user runs it, from folders to files."""
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+import numpy as np
+import OpenImageIO as oiio
+
+from sweeps import SECONDS, Folders, write
+
+SOURCE = pathlib.Path(sys.argv[1])
+PROGRAM = SOURCE / 'pipelines/stack/dff-stack'
+WIDTH, HEIGHT, PLANES = 192, 128, 6
+
+
+def blurred(pixels, times):
+    for _ in range(times):
+        pixels = (np.roll(pixels, 1, 0) + 2 * pixels + np.roll(pixels, -1, 0)) / 4
+        pixels = (np.roll(pixels, 1, 1) + 2 * pixels + np.roll(pixels, -1, 1)) / 4
+    return pixels
+
+
+def sharp(width=WIDTH, height=HEIGHT):
+    """What a sweep is of."""
+    return blurred(np.random.default_rng(3).integers(0, 256, (height, width, 3)).astype(float), 1)
+
+
+def plane(number, scene=None, planes=PLANES):
+    """A picture of a slope that is nearest, in focus in picture 0, at its left."""
+    scene = sharp() if scene is None else scene
+    depth = np.linspace(0, planes - 1, scene.shape[1])
+    levels = [blurred(scene, 3 * step) for step in range(planes)]
+    away = np.abs(depth - number).clip(0, planes - 1)
+    low = away.astype(int)
+    part = (away - low)[None, :, None]
+    stack = np.stack(levels)
+    columns = np.arange(scene.shape[1])
+    return (1 - part) * stack[low, :, columns].swapaxes(0, 1) + part * stack[np.minimum(low + 1, planes - 1), :, columns].swapaxes(0, 1)
+
+
+def read(path):
+    image = oiio.ImageInput.open(str(path))
+    assert image, oiio.geterror()
+    spec = oiio.ImageSpec(image.spec())
+    pixels = image.read_image(0, 0, 0, spec.nchannels, oiio.UNKNOWN)
+    image.close()
+    return spec, pixels
+
+
+class Program(Folders):
+    def setUp(self):
+        super().setUp()
+        self.out = self.photos.parent
+
+    def run_program(self, *arguments, **environment):
+        return subprocess.run([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                              timeout=SECONDS, env={**os.environ, **environment})
+
+    def stack(self, *arguments):
+        finished = self.run_program(*arguments)
+        self.assertEqual(finished.returncode, 0, finished.stderr)
+        return finished
+
+    def assert_fails(self, status, phrase, *arguments, **environment):
+        finished = self.run_program(*arguments, **environment)
+        self.assertEqual(finished.returncode, status, finished.stderr)
+        self.assertIn(phrase, finished.stderr.strip().splitlines()[-1])
+        self.assertNotIn('Traceback', finished.stderr)
+        return finished
+
+    def write_sweep(self, ending='png', factor=1, kind=np.uint8):
+        for number in range(PLANES):
+            write(self.photos / f'p{number}.{ending}', np.round(plane(number) * factor).astype(kind))
+
+    def assert_slope(self, depth, slack=0.6):
+        slope = np.linspace(0, PLANES - 1, WIDTH)
+        self.assertLess(np.nanmedian(np.abs(depth[16:-16, 16:-16] - slope[None, 16:-16])), slack)
+
+
+class Results(Program):
+    def test_all_of_them(self):
+        self.write_sweep()
+        names = {'output': 'all.tif', 'depth': 'z.tif', 'depth-code': 'z.png', 'depth-colours': 'c.jpg', 'index': 'i.png',
+                 'confidence': 'sure.png', 'cloud': 'p.ply', 'save-alignment': 'a.json', 'video': 'v.webm'}
+        finished = self.stack(self.photos, *(word for name, file in names.items() for word in (f'--{name}', self.out / file)))
+        self.assertEqual([line.split()[1] for line in finished.stdout.splitlines()], [f'p{number}.png' for number in range(PLANES)])
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()), sorted([*names.values(), 'photos']))
+        spec, pixels = read(self.out / 'all.tif')
+        self.assertLess(np.abs(pixels[16:-16, 16:-16].astype(float) - sharp()[16:-16, 16:-16]).mean(), 4)
+        self.assertIn('dff-stack', spec.get_string_attribute('Software'))
+        self.assertIn('6 pictures', spec.get_string_attribute('ImageDescription'))
+        _, depth = read(self.out / 'z.tif')
+        self.assertEqual(depth.dtype, np.float32)
+        self.assert_slope(depth[:, :, 0])
+        _, code = read(self.out / 'z.png')
+        self.assertEqual(code.dtype, np.uint16)
+        self.assert_slope((code[:, :, 0] - 1.0) * (PLANES - 1) / 65534)
+        _, index = read(self.out / 'i.png')
+        np.testing.assert_array_equal(index[:, :, 0], np.nan_to_num(np.round(depth[:, :, 0]) + 1))
+        header, _, vertices = (self.out / 'p.ply').read_bytes().partition(b'end_header\n')
+        self.assertIn(f'element vertex {len(vertices) // 15}'.encode(), header)
+        self.assertTrue((self.out / 'v.webm').read_bytes().startswith(b'\x1aE\xdf\xa3'))
+
+    def test_16_bits_of_grey_stay(self):
+        ramp = np.linspace(10000, 50000, WIDTH)
+        for number in range(PLANES):
+            tone = ramp[None] + plane(number)[:, :, 0] * 8
+            write(self.photos / f'{number}.tif', np.round(tone)[:, :, None].astype(np.uint16))
+        self.stack(self.photos, '-o', self.out / 'a.png', '--align', 'off', '--even', 'off')
+        spec, pixels = read(self.out / 'a.png')
+        self.assertEqual((spec.nchannels, pixels.dtype), (1, np.uint16))
+        self.assertLess(np.abs(pixels[16:-16, 16:-16, 0] - (ramp[None] + sharp()[:, :, 0] * 8)[16:-16, 16:-16]).mean(), 40)
+        self.assertGreater(len(np.unique(pixels)), 4096)
+
+    def test_exif_and_profile_are_kept(self):
+        profile = struct.pack('>I4xI4s4s4s', 140, 0x04000000, b'mntr', b'RGB ', b'XYZ ').ljust(36, b'\0') + b'acsp' + b'mine' * 25
+        segment = b'ICC_PROFILE\0\1\1' + profile
+        for number in range(2):
+            spec = oiio.ImageSpec(WIDTH, HEIGHT, 3, oiio.UINT8)
+            spec['ExposureTime'], spec['Make'], spec['Orientation'] = 0.01, 'Maker', 3
+            output = oiio.ImageOutput.create('x.jpg')
+            path = self.photos / f'{number}.jpg'
+            turned = np.ascontiguousarray(np.round(plane(3 * number)).astype(np.uint8)[::-1, ::-1])
+            assert output.open(str(path), spec) and output.write_image(turned) and output.close()
+            path.write_bytes(b'\xff\xd8\xff\xe2' + struct.pack('>H', len(segment) + 2) + segment + path.read_bytes()[2:])
+        for name in ('a.tif', 'a.jpg', 'a.exr'):
+            self.stack(self.photos, '-o', self.out / name)
+            spec, pixels = read(self.out / name)
+            self.assertAlmostEqual(spec.get_float_attribute('ExposureTime'), 0.01, places=4)
+            self.assertEqual((spec.get_string_attribute('Make'), spec.get_int_attribute('Orientation')), ('Maker', 1))
+            has_profile = profile in (self.out / name).read_bytes()
+            self.assertEqual(has_profile, name != 'a.exr')
+
+    def test_linear_light_comes_back(self):
+        for number in range(PLANES):
+            write(self.photos / f'{number}.exr', (plane(number) / 64).astype(np.float32))
+        self.stack(self.photos, '-o', self.out / 'a.exr', '--even', 'off', '--align', 'off')
+        spec, pixels = read(self.out / 'a.exr')
+        self.assertEqual(spec.get_string_attribute('oiio:ColorSpace'), 'Linear')
+        self.assertLess(np.abs(pixels.astype(float) - sharp() / 64)[16:-16, 16:-16].mean(), 0.06)
+
+    def test_an_alignment_is_used_again(self):
+        self.write_sweep()
+        shifted = np.round(plane(2, np.roll(sharp(), 5, 1))).astype(np.uint8)
+        write(self.photos / 'p2.png', shifted)
+        self.stack(self.photos, '-o', self.out / 'a.tif', '--save-alignment', self.out / 'a.json')
+        self.stack(self.photos, '-o', self.out / 'b.tif', '--use-alignment', self.out / 'a.json')
+        np.testing.assert_array_equal(read(self.out / 'a.tif')[1], read(self.out / 'b.tif')[1])
+        (self.photos / 'p5.png').unlink()
+        self.assert_fails(1, '6 pictures, and there are 5', self.photos, '-o', self.out / 'b.tif', '--use-alignment', self.out / 'a.json')
+
+    def test_heights_by_the_step(self):
+        self.write_sweep()
+        self.stack(self.photos, '--depth', self.out / 'z.exr', '--step', '2.5')
+        self.assert_slope(read(self.out / 'z.exr')[1][:, :, 0] / 2.5)
+
+    def test_far_first_turns_the_depth(self):
+        self.write_sweep()
+        self.stack(self.photos, '--depth', self.out / 'z.tif', '--far-first')
+        self.assert_slope(PLANES - 1 - read(self.out / 'z.tif')[1][:, :, 0])
+
+    def test_a_preview_is_a_quarter(self):
+        for number in range(PLANES):
+            write(self.photos / f'{number}.png', np.round(np.kron(plane(number), np.ones((4, 4, 1)))).astype(np.uint8))
+        self.stack(self.photos, '-o', self.out / 'a.png', '--preview')
+        spec, pixels = read(self.out / 'a.png')
+        self.assertEqual((spec.width, spec.height), (WIDTH, HEIGHT))
+
+
+class Failing(Program):
+    def test_nothing_is_left_of_what_fails(self):
+        self.write_sweep()
+        (self.photos / 'p3.png').write_bytes((self.photos / 'p3.png').read_bytes()[:-2000])
+        (self.out / 'a.png').write_text('what was there')
+        self.assert_fails(1, 'p3.png cannot be read: ', self.photos, '-o', self.out / 'a.png', '--depth', self.out / 'z.png')
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()), ['a.png', 'photos'])
+        self.assertEqual((self.out / 'a.png').read_text(), 'what was there')
+
+    def test_what_is_wrong_is_told(self):
+        self.write_sweep()
+        out = self.out / 'a.png'
+        self.assert_fails(2, '-o result.tif', self.photos)
+        self.assert_fails(2, 'name the pictures', '-o', out)
+        self.assert_fails(2, 'must end in', self.photos, '-o', self.out / 'a.gif')
+        self.assert_fails(2, 'the same name', self.photos, '-o', out, '--depth', out)
+        self.assert_fails(2, '6G', self.photos, '-o', out, '--memory', 'much')
+        self.assert_fails(1, 'nowhere', self.photos, '-o', self.out / 'nowhere/a.png')
+        self.assert_fails(1, 'no alignment', self.photos, '-o', out, '--use-alignment', self.photos / 'p1.png')
+        self.assert_fails(1, 'OpenCL', self.photos, '-o', out, OCL_ICD_VENDORS='/nonexistent')
+        self.assertFalse(out.exists())
+
+    def test_pictures_of_other_things_are_left_out(self):
+        self.write_sweep()
+        other = np.random.default_rng(8).integers(0, 256, (HEIGHT, WIDTH, 3)).astype(float)
+        write(self.photos / 'p2b.png', np.round(blurred(other, 1)).astype(np.uint8))
+        finished = self.stack(self.photos, '-o', self.out / 'a.png')
+        self.assertRegex(finished.stderr, r'Left out.*: p2b\.png')
+
+    def test_an_interrupt_leaves_nothing(self):
+        self.write_sweep()
+        for after in (0.6, 1.5):
+            process = subprocess.Popen([PROGRAM, self.photos, '-o', self.out / 'a.png'], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE, text=True)
+            time.sleep(after)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=SECONDS)
+            if process.returncode == 0:  # it was done before
+                continue
+            self.assertIn(process.returncode, (130, -signal.SIGINT), errors)
+            self.assertEqual([path.name for path in self.out.iterdir()], ['photos'])
+
+    def test_help_is_a_manual(self):
+        text = self.stack('--help').stdout
+        for word in ('ORDER', 'RESULTS', 'MEMORY', 'EXAMPLES', 'EXIT STATUS', '--far-first', '--preview'):
+            self.assertIn(word, text)
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,341 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, in which order, and what it refuses."""
+import pathlib
+import shutil
+import sys
+import unittest
+
+import numpy as np
+import OpenImageIO as oiio
+
+from sweeps import CMYK, SIDE, Folders, flat, texture, write
+
+sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
+from dff_stack import Unusable, depths, encoding, order, pictures, sweep  # noqa: E402
+from dff_stack.progress import Progress  # noqa: E402
+
+
+def write_pages(path, pages, description=''):
+    """A TIFF file of several pages."""
+    specs = []
+    for page in pages:
+        specs.append(oiio.ImageSpec(page.shape[1], page.shape[0], page.shape[2], oiio.UINT8))
+        specs[-1]['ImageDescription'] = description
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), tuple(specs)), output.geterror()
+    for number, page in enumerate(pages):
+        assert number == 0 or output.open(str(path), specs[number], 'AppendSubimage'), output.geterror()
+        assert output.write_image(page), output.geterror()
+    assert output.close(), output.geterror()
+
+
+class Sweeps(Folders):
+    def setUp(self):
+        super().setUp()
+        self.said = []
+
+    def gather(self, *paths, order_='name', far_first=False):
+        return sweep.gather(paths or [self.photos], order_, far_first, self.said.append)[0]
+
+    def names(self, **options):
+        return [picture.name for picture in self.gather(**options)]
+
+    def frames(self, has_deep_colour=False):
+        found = sweep.Sweep(self.gather(), has_deep_colour, False)
+        found.look_through(0, Progress(quiet=True))
+        return found, [found.read(number) for number in range(found.count)]
+
+    def assert_refused(self, *phrases, act=None):
+        with self.assertRaises(Unusable) as caught:
+            (act or self.frames)()
+        for phrase in phrases:
+            self.assertIn(phrase, str(caught.exception))
+
+
+class Reading(Sweeps):
+    def test_order_is_that_in_which_people_count(self):
+        names = ['a1.JPG', 'a2.png', 'A3.jpeg', 'a4.tif', 'a10.jpg', 'a11.PNG', 'b1.jpg']
+        for level, name in enumerate(names):
+            write(self.photos / name, flat(20 + 30 * level))
+        (self.photos / '._a1.JPG').write_bytes(b'left by a file manager')
+        (self.photos / 'a1.xmp').write_text('<x/>')
+        for level, frame in enumerate(self.frames()[1]):
+            self.assertAlmostEqual(int(np.median(frame)), 20 + 30 * level, delta=1)
+        self.assertEqual(self.names(), names)
+        self.assertEqual(self.names(far_first=True), names[::-1])
+
+    def test_colours_of_16_bits_are_right(self):
+        ramp = np.arange(SIDE * SIDE, dtype=np.uint16).reshape(SIDE, SIDE, 1) * 7 + np.array([0, 100, 900], np.uint16)
+        for ending in ('png', 'tif'):
+            with self.subTest(ending):
+                for number in range(2):
+                    write(self.photos / f'{number}.{ending}', ramp)
+                for frame in self.frames()[1]:
+                    self.assertLessEqual(np.abs(frame - ramp / 257).max(), 0.5)
+                found, frames = self.frames(has_deep_colour=True)
+                self.assertEqual(found.encoding.format, 'RGBA64_LE')
+                np.testing.assert_array_equal(frames[0][:, :, :3], ramp)
+                np.testing.assert_array_equal(found.encoding.decode(frames[0]), ramp)
+                for path in self.photos.iterdir():
+                    path.unlink()
+
+    def test_grey_keeps_its_16_bits(self):
+        ramp = np.arange(SIDE * SIDE, dtype=np.uint16).reshape(SIDE, SIDE, 1) * 7
+        for ending in ('png', 'tif'):
+            for number in range(2):
+                write(self.photos / f'{number}.{ending}', ramp)
+        found, frames = self.frames()
+        self.assertEqual(found.encoding.format, 'GRAY16_LE')
+        for frame in frames:
+            np.testing.assert_array_equal(frame, ramp)
+
+    def test_numbers_with_a_point_keep_their_colours(self):
+        light = (np.arange(SIDE * SIDE, dtype=np.float32).reshape(SIDE, SIDE, 1) / 3000) ** 2 * np.array([1, 0.5, 0.1], np.float32)
+        for number in range(2):
+            write(self.photos / f'{number}.exr', light)
+        found, frames = self.frames(has_deep_colour=True)
+        np.testing.assert_allclose(found.encoding.decode(frames[0]), light, rtol=0.01, atol=1e-4)
+        light[5, 5] = (np.nan, np.inf, -1)
+        write(self.photos / '0.exr', light)
+        self.assertTrue(np.isfinite(self.frames(has_deep_colour=True)[1][0]).all())
+
+    def test_pictures_are_turned_upright(self):
+        upright = np.zeros((80, 100, 3), np.uint8)
+        upright[:40, :50], upright[:40, 50:], upright[40:, :50] = (250, 0, 0), (0, 250, 0), (0, 0, 250)
+        stored = {1: upright, 2: upright[:, ::-1], 3: upright[::-1, ::-1], 4: upright[::-1], 5: upright.swapaxes(0, 1),
+                  6: np.rot90(upright), 7: np.rot90(upright, 2).swapaxes(0, 1), 8: np.rot90(upright, -1)}
+        for orientation, pixels in stored.items():
+            write(self.photos / f'{orientation}.tif', np.ascontiguousarray(pixels), orientation)
+        for orientation, frame in enumerate(self.frames()[1], 1):
+            np.testing.assert_array_equal(frame, upright, f'orientation {orientation}')
+
+    def test_cmyk_becomes_rgb(self):
+        for number in range(2):
+            (self.photos / f'{number}.jpg').write_bytes(CMYK)
+        for frame in self.frames()[1]:
+            self.assertLessEqual(np.abs(frame - np.array([230, 138, 69])).max(), 3)
+
+    def test_transparency_takes_no_colour(self):
+        pixels = np.concatenate([flat((200, 100, 50)), flat(64)[:, :, :1]], 2)
+        for number in range(2):
+            write(self.photos / f'{number}.png', pixels)
+        self.assertTrue((self.frames()[1][0] == (200, 100, 50)).all())
+
+    def test_rows_of_odd_widths_and_grey_among_colours(self):
+        write(self.photos / '1.png', flat((200, 100, 50), 67, 65))
+        write(self.photos / '2.png', flat(90, 67, 65)[:, :, :1])
+        colour, grey = self.frames()[1]
+        self.assertTrue((colour == (200, 100, 50)).all() and (grey == 90).all())
+
+    def test_a_raw_file_of_a_camera(self):
+        for number in range(2):
+            write_dng(self.photos / f'{number}.dng', 200, 100)
+        _, frames = self.frames(has_deep_colour=True)
+        self.assertEqual(frames[0].dtype, np.uint16)
+        self.assertGreater(frames[0][10:-10, 10:-10, :3].mean(), 1000)
+
+    def test_pages_are_pictures(self):
+        write_pages(self.photos / 'sweep.tif', [flat(50 * number) for number in range(4)])
+        write(self.photos / 'sweep2.tif', flat(220))
+        self.assertEqual([int(frame[0, 0, 0]) for frame in self.frames()[1]], [0, 50, 100, 150, 220])
+        self.assertEqual(self.names()[1], 'sweep.tif, page 2')
+
+    def test_a_small_preview_in_a_file_is_no_picture(self):
+        for name in 'ab':
+            write_pages(self.photos / f'{name}.tif', [flat(50, 400, 300), flat(50, 80, 60)])
+        self.assertEqual(self.names(), ['a.tif', 'b.tif'])
+
+
+def write_dng(path, width, height):
+    """A raw file: 16 bits a pixel behind filters of red, green and blue, not compressed."""
+    import struct
+    pixels = (np.arange(width * height, dtype=np.uint16).reshape(height, width) % 977) * 60 + 2000
+    identity = [value for row in np.eye(3, dtype=int) for value in row]
+    entries = [(254, 4, [0]), (256, 4, [width]), (257, 4, [height]), (258, 3, [16]), (259, 3, [1]), (262, 3, [32803]),
+               (271, 2, b'Maker\0'), (272, 2, b'Model\0'), (273, 4, [None]), (274, 3, [1]), (277, 3, [1]), (278, 4, [height]),
+               (279, 4, [pixels.nbytes]), (33421, 3, [2, 2]), (33422, 1, bytes([0, 1, 1, 2])), (50706, 1, bytes([1, 4, 0, 0])),
+               (50707, 1, bytes([1, 1, 0, 0])), (50708, 2, b'Maker Model\0'), (50721, 10, identity), (50728, 5, [1, 1, 1]),
+               (50778, 3, [21])]
+    start = 8 + 2 + 12 * len(entries) + 4
+    extra, directory = b'', b''
+    sizes = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 10: 8}
+    for tag, kind, values in entries:
+        count = len(values)
+        if isinstance(values, bytes):
+            data = values
+        elif kind in (5, 10):
+            data = b''.join(struct.pack('<ii', value, 1) for value in values)
+        else:
+            data = b''.join(struct.pack('<H' if kind == 3 else '<I', 2048 if value is None else value) for value in values)
+        assert len(data) == count * sizes[kind]
+        if len(data) > 4:
+            directory += struct.pack('<HHII', tag, kind, count, start + len(extra))
+            extra += data + b'\0' * (len(data) % 2)
+        else:
+            directory += struct.pack('<HHI', tag, kind, count) + data.ljust(4, b'\0')
+    head = b'II*\0' + struct.pack('<I', 8) + struct.pack('<H', len(entries)) + directory + struct.pack('<I', 0) + extra
+    path.write_bytes(head.ljust(2048, b'\0') + pixels.tobytes())
+
+
+OME = '''<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0">
+<Pixels ID="Pixels:0" DimensionOrder="XYZCT" Type="uint8" SizeX="96" SizeY="96" SizeZ="3" SizeC="{channels}" SizeT="1"
+PhysicalSizeX="0.5" PhysicalSizeY="0.5" PhysicalSizeZ="2" PhysicalSizeZUnit="µm">{planes}</Pixels></Image></OME>'''
+
+
+class Ome(Sweeps):
+    def write(self, planes='', channels=1):
+        write_pages(self.photos / 'a.ome.tif', [flat(50 * number) for number in range(3)], OME.format(planes=planes, channels=channels))
+
+    def test_the_step_and_the_size_of_a_pixel_are_taken(self):
+        self.write()
+        found, pixel_um = sweep.gather([self.photos], 'name', False, self.said.append)
+        self.assertEqual([picture.position_um for picture in found], [0, 2, 4])
+        self.assertEqual(pixel_um, 0.5)
+        depth = np.array([[0, 0.5, np.nan, 2]], np.float32)
+        heights, unit, extent = depths.heights(depth, found)
+        np.testing.assert_allclose(heights, [[0, 1, np.nan, 4]])
+        self.assertEqual((unit, extent), ('micrometres', (0, 4)))
+
+    def test_positions_of_planes_go_before_the_step(self):
+        self.write(''.join(f'<Plane TheZ="{z}" TheC="0" TheT="0" PositionZ="{place}" PositionZUnit="mm"/>'
+                           for z, place in enumerate((1, 1.5, 1.6))))
+        self.assertEqual([picture.position_um for picture in self.gather()], [1000, 1500, 1600])
+
+    def test_several_channels_are_refused(self):
+        self.write(channels=3)
+        self.assert_refused('a.ome.tif', '3 channels')
+
+    def test_a_description_that_is_none_is_refused(self):
+        write_pages(self.photos / 'a.tif', [flat(0), flat(50)], '<OME><broken')
+        self.assert_refused('a.tif', 'OME')
+
+
+class Order(Sweeps):
+    def setUp(self):
+        super().setUp()
+        for number in range(5):
+            write(self.photos / f'{number}.tif', texture(number))
+
+    def tell(self, of):
+        found = self.gather()
+        for number, picture in enumerate(found):
+            of(number, picture)
+        return found
+
+    def test_distances_that_fall_turn_the_order(self):
+        found = [picture for picture in self.gather()]
+        for number, picture in enumerate(found):
+            picture.distance_m = 1.0 - 0.1 * number
+        turned = order.nearest_first(found, 'name', False, self.said.append)
+        self.assertEqual(turned, found[::-1])
+        self.assertIn('reverse', self.said[0])
+        self.assertEqual(order.nearest_first(turned, 'exif-distance', False, self.said.append), found[::-1])
+
+    def test_distances_that_do_not_agree_turn_nothing(self):
+        self.assertEqual(order.direction([1, 2, 1, 2, 1]), 0)
+        self.assertEqual(order.direction([None, None, None, 2, 1]), 0)
+        self.assertEqual(order.direction([3, 2.5, None, 2, 1]), -1)
+
+    def test_by_time(self):
+        found = self.tell(lambda number, picture: setattr(picture, 'time', f'2026:01:01 10:00:{50 - number}.'))
+        self.assertEqual(order.ordered(found, 'time'), found[::-1])
+        found[2].time = ''
+        self.assert_refused('2.tif', '--order time', act=lambda: order.ordered(found, 'time'))
+
+    def test_exif_is_read(self):
+        spec = oiio.ImageSpec(SIDE, SIDE, 3, oiio.UINT8)
+        spec['Exif:SubjectDistance'], spec['Exif:DateTimeOriginal'] = 0.25, '2026:01:01 10:00:00'
+        path = self.photos / '0.tif'
+        output = oiio.ImageOutput.create(str(path))
+        assert output.open(str(path), spec) and output.write_image(flat(9)) and output.close()
+        picture = self.gather()[0]
+        self.assertAlmostEqual(picture.distance_m, 0.25)
+        self.assertTrue(picture.time.startswith('2026:01:01 10:00:00'))
+
+    def test_what_is_out_of_order_is_named(self):
+        found = self.tell(lambda number, picture: setattr(picture, 'time', f'2026:01:01 10:00:0{(0, 1, 4, 3, 5)[number]}.'))
+        order.tell_of_doubts(found, [], self.said.append)
+        self.assertIn('3.tif', self.said[0])
+
+    def test_a_picture_that_interrupts_a_sweep_is_noticed(self):
+        def view(place):
+            x = np.linspace(0, 9, 32)
+            return np.tile(120 + 80 * np.sin(x + 0.3 * place), (32, 1))
+        places = [0, 1, 2, 7, 3, 4, 5, 6, 8, 9]
+        self.assertEqual(order.out_of_place([view(place) for place in places]), [3])
+        self.assertEqual(order.out_of_place([view(place) for place in sorted(places)]), [])
+
+    def test_the_same_picture_is_taken_once(self):
+        shutil.copy(self.photos / '1.tif', self.photos / '3b.tif')
+        found = sweep.Sweep(self.gather(), False, False)
+        look = found.look_through(0, Progress(quiet=True))
+        sweep.without_duplicates(found, look, self.said.append)
+        self.assertEqual([picture.name for picture in found.pictures], ['0.tif', '1.tif', '2.tif', '3.tif', '4.tif'])
+        self.assertEqual(len(look.lumas), 5)
+        self.assertRegex(self.said[0], '3b.tif is the same picture as 1.tif')
+
+
+class Refusing(Sweeps):
+    def setUp(self):
+        super().setUp()
+        for number in range(2):
+            write(self.photos / f'{number}.jpg', texture(number).repeat(3, 2))
+
+    def test_files_that_are_cut_empty_or_not_there(self):
+        whole = (self.photos / '0.jpg').read_bytes()
+        bad = self.photos / '5 "it\'s" 100%\\n.jpg'
+        for name, content in (('cut', whole[:len(whole) // 2]), ('empty', b''), ('text', b'no picture')):
+            with self.subTest(name):
+                bad.write_bytes(content)
+                self.assert_refused(bad.name, 'cannot be read: ')
+        bad.unlink()
+        bad.symlink_to('nowhere')
+        self.assert_refused(bad.name, 'cannot be read: ')
+        bad.unlink()
+        for ending in ('png', 'tif', 'exr'):
+            path = self.photos / f'7.{ending}'
+            write(path, texture(0))
+            path.write_bytes(path.read_bytes()[:path.stat().st_size // 2])
+            with self.subTest(ending):
+                self.assert_refused(path.name)
+            path.unlink()
+
+    def test_sizes(self):
+        write(self.photos / '2.png', flat(0, 100, SIDE))
+        self.assert_refused('2.png is 100x96', '0.jpg is 96x96')
+        write(self.photos / '2.png', flat(0, 63, 64))
+        self.assert_refused('2.png is 63x64', '64x64')
+
+    def test_too_few(self):
+        (self.photos / '1.jpg').unlink()
+        self.assert_refused('photos holds 1 picture ', '2 or more')
+        (self.photos / '0.jpg').unlink()
+        self.assert_refused('photos holds 0 pictures ')
+        self.assert_refused('nowhere does not exist', act=lambda: self.gather(self.photos / 'nowhere'))
+
+    def test_floats_among_whole_numbers(self):
+        write(self.photos / '2.exr', np.ones((SIDE, SIDE, 3), np.float32))
+        self.assert_refused('2.exr', 'point')
+
+    def test_nothing_but_one_picture_again_and_again(self):
+        shutil.copy(self.photos / '0.jpg', self.photos / '1.jpg')
+        found = sweep.Sweep(self.gather(), False, False)
+        look = found.look_through(0, Progress(quiet=True))
+        self.assert_refused('same', act=lambda: sweep.without_duplicates(found, look, self.said.append))
+
+
+class Shrinking(unittest.TestCase):
+    def test_luma_is_the_mean_over_squares(self):
+        pixels = np.random.default_rng(1).integers(0, 65536, (67, 130, 3)).astype(np.uint16)
+        small = encoding.shrunk_luma(pixels, 32)
+        self.assertEqual(small.shape, (16, 32))
+        self.assertAlmostEqual(float(small[3, 4]), pixels[12:16, 16:20].mean(), delta=0.01)
+        preview = sweep.smaller(pixels, 4)
+        self.assertEqual(preview.dtype, np.uint16)
+        np.testing.assert_allclose(preview[3, 4], pixels[12:16, 16:20].mean((0, 1)), atol=0.5)
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1])
