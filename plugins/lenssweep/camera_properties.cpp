@@ -80,7 +80,7 @@ void install_texts(GObjectClass *klass)
          "The camera's input that the sequencer is wired to, for trigger=line", "Line0"},
         {PROP_LENS, "lens", "Lens",
          "What moves the lens: fpga:DEVICE@ADDRESS, max14574:DEVICE@ADDRESS, genicam:FEATURE, v4l2:DEVICE, "
-         "or none",
+         "optotune:PORT, or none",
          "none"},
         {PROP_LENS_PROFILE, "lens-profile", "Lens profile",
          "YAML file of what the lens does at which voltage; the one shipped if empty", ""},

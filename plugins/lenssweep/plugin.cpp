@@ -4,6 +4,7 @@
 #include "config.h"
 #endif
 
+#include "focuslensdeviceprovider.h"
 #ifdef HAVE_ARAVIS
 #include "lenssweepdeviceprovider.h"
 #include "lenssweepsrc.h"
@@ -15,12 +16,13 @@ static gboolean plugin_init(GstPlugin *plugin)
 {
     const gboolean tag = GST_ELEMENT_REGISTER(lenssweeptag, plugin);
     const gboolean test_src = GST_ELEMENT_REGISTER(lenssweeptestsrc, plugin);
+    const gboolean lenses = GST_DEVICE_PROVIDER_REGISTER(focuslensdeviceprovider, plugin);
 #ifdef HAVE_ARAVIS
     if (!GST_ELEMENT_REGISTER(lenssweepsrc, plugin) ||
         !GST_DEVICE_PROVIDER_REGISTER(lenssweepdeviceprovider, plugin))
         return FALSE;
 #endif
-    return tag && test_src;
+    return tag && test_src && lenses;
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, lenssweep, "Planes taken with a swept focus",

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sweep_tagger.h"
 
+#include "lens/found_lenses.h"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -39,7 +41,8 @@ void SweepTagger::open_step(std::unique_ptr<dff::Lens> lens)
 {
     if (!dynamic_cast<dff::SteppedLens *>(lens.get()))
         throw std::invalid_argument("mode=step needs a lens that can be moved, as lens=v4l2:/dev/video0, "
-                                    "lens=element:cam.lens-position or lens=max14574:/dev/i2c-1");
+                                    "lens=element:cam.lens-position or lens=max14574:/dev/i2c-1. " +
+                                    dff::describe(dff::find_lenses(dff::this_machine())));
     lens->prepare({plan_});
     lens->start();
     std::unique_ptr<dff::SteppedLens> stepped(dynamic_cast<dff::SteppedLens *>(lens.release()));

@@ -56,11 +56,11 @@ void install_tag_properties(GObjectClass *klass)
                                     g_param_spec_enum("mode", "Mode", "How the plane of a frame is found",
                                                       gst_lens_sweep_tag_mode_get_type(), defaults.mode,
                                                       flags));
-    install_string(
-        klass, PROP_LENS, "lens", "Lens",
-        "The lens that is moved (step) or started (sync): element:cam.lens-position, v4l2:/dev/video0, "
-        "max14574:/dev/i2c-1@0x77, fpga:/dev/i2c-1@0x3c, or none",
-        defaults.lens.c_str());
+    install_string(klass, PROP_LENS, "lens", "Lens",
+                   "The lens that is moved (step) or started (sync): element:cam.lens-position, "
+                   "v4l2:/dev/video0, optotune:/dev/ttyACM0, "
+                   "max14574:/dev/i2c-1@0x77, fpga:/dev/i2c-1@0x3c, or none",
+                   defaults.lens.c_str());
     install_string(
         klass, PROP_LENS_PROFILE, "lens-profile", "Lens profile",
         "YAML file that gives the voltages of a liquid lens (empty: nominal Varioptic C-C-39N0-250), or the "

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lens_uri.h"
 
+#include "found_lenses.h"
+
 #include <charconv>
 #include <stdexcept>
 #include <string_view>
@@ -18,9 +20,11 @@ constexpr unsigned highest_address = 0x77;
 
 [[noreturn]] void refuse(const std::string &text, const std::string &why)
 {
-    throw std::invalid_argument("the lens \"" + text + "\" " + why +
-                                ". It is one of fpga:/dev/i2c-1@0x3c, max14574:/dev/i2c-1@0x77, "
-                                "genicam:FocalPower, v4l2:/dev/video0, element:cam.lens-position, none");
+    throw std::invalid_argument(
+        "the lens \"" + text + "\" " + why +
+        ". It is one of fpga:/dev/i2c-1@0x3c, max14574:/dev/i2c-1@0x77, "
+        "genicam:FocalPower, v4l2:/dev/video0, element:cam.lens-position, optotune:/dev/ttyACM0, none. " +
+        describe(find_lenses(this_machine())));
 }
 
 /* Decimal, or hexadecimal after 0x. */
@@ -90,6 +94,12 @@ LensUri LensUri::parse(const std::string &text)
             refuse(text, "names no video device");
         }
         return {LensKind::V4l2, rest, 0, {}, {}};
+    }
+    if (scheme == "optotune") {
+        if (rest.empty()) {
+            refuse(text, "names no serial port");
+        }
+        return {LensKind::Optotune, rest, 0, {}, {}};
     }
     if (scheme == "element") {
         return parse_element(text, rest);

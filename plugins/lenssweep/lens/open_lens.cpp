@@ -3,10 +3,12 @@
 #include "open_lens.h"
 
 #include "element_lens.h"
+#include "found_lenses.h"
 #include "fpga_sweep_lens.h"
 #include "genicam_lens.h"
 #include "linux_i2c_bus.h"
 #include "max14574_lens.h"
+#include "optotune_lens.h"
 #include "v4l2_lens.h"
 
 #include <cstdlib>
@@ -45,7 +47,7 @@ std::optional<FocusPoints> load_points(const LensSurroundings &surroundings)
 
 } // namespace
 
-std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings)
+static std::unique_ptr<Lens> open_kind(const LensUri &uri, const LensSurroundings &surroundings)
 {
     if (!surroundings.profile.empty() && uri.kind == LensKind::None)
         throw std::invalid_argument("lens-profile goes with a lens that is moved, and lens=none is not");
@@ -64,6 +66,8 @@ std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surr
         return std::make_unique<GenicamLens>(*surroundings.features, uri.feature, load_points(surroundings));
     case LensKind::V4l2:
         return std::make_unique<V4l2Lens>(uri.device, load_points(surroundings));
+    case LensKind::Optotune:
+        return std::make_unique<OptotuneLens>(uri.device, load_points(surroundings));
     case LensKind::Element:
         if (!surroundings.find_property)
             throw LensError("the lens element:" + uri.element + "." + uri.feature +
@@ -74,6 +78,15 @@ std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surr
         break;
     }
     return std::make_unique<UnmovedLens>();
+}
+
+std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings)
+{
+    try {
+        return open_kind(uri, surroundings);
+    } catch (const LensError &error) {
+        throw LensError(std::string(error.what()) + ". " + describe(find_lenses(this_machine())));
+    }
 }
 
 } // namespace dff

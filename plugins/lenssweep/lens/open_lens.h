@@ -16,7 +16,7 @@ class CameraFeatures;
 
 /* What a lens may need besides its URI. */
 struct LensSurroundings {
-    /* File of a LensProfile (fpga, max14574; empty for the one shipped) or of FocusPoints (element, v4l2). */
+    /* File of a LensProfile (fpga, max14574; empty for the one shipped) or of FocusPoints (the others). */
     std::string profile;
     CameraFeatures *features = nullptr; /* of the camera, for genicam; it outlives the lens */
 
@@ -25,8 +25,8 @@ struct LensSurroundings {
         find_property = {};
 };
 
-/* Opens a lens; what comes is a SequencedLens (fpga), a SteppedLens (max14574, genicam, v4l2, element), or a
- * Lens that nobody moves (none). Throws LensError if the device is missing or something else,
+/* Opens a lens; what comes is a SequencedLens (fpga), a Lens that nobody moves (none), or else a
+ * SteppedLens. Throws LensError if the device is missing or something else,
  * std::invalid_argument for a profile that cannot be used, or given for a lens that has none. */
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings);
 

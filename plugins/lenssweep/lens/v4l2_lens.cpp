@@ -65,6 +65,17 @@ double measured_position(const v4l2_queryctrl &focus, double position)
 
 } // namespace
 
+std::optional<std::pair<int, int>> v4l2_focus_range(const std::string &device)
+{
+    const int descriptor = open(device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0)
+        return std::nullopt;
+    v4l2_queryctrl focus{};
+    const bool can = query(descriptor, V4L2_CID_FOCUS_ABSOLUTE, focus);
+    close(descriptor);
+    return can ? std::optional(std::pair(focus.minimum, focus.maximum)) : std::nullopt;
+}
+
 V4l2Lens::V4l2Lens(std::string device, std::optional<FocusPoints> points)
     : device_(std::move(device)), points_(std::move(points)),
       descriptor_(open(device_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC))

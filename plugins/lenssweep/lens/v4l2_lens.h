@@ -8,9 +8,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dff {
+
+/* The least and the greatest position of a device's lens, nothing if there is none that can be set. */
+std::optional<std::pair<int, int>> v4l2_focus_range(const std::string &device);
 
 /* The lens of a V4L2 device: autofocus is switched off, and the control "focus, absolute" moved over its
  * whole range. The control is larger for nearer, in no unit, so planes are in order and uncalibrated, unless

@@ -73,6 +73,22 @@ TEST(StepMode, frames_show_the_lens_at_the_plane_of_their_label)
     EXPECT_GE(count_of(tag, "dropped"), 9U);
 }
 
+TEST(StepMode, lenses_are_listed_and_errors_tell_of_them)
+{
+    g_autoptr(GstDeviceProvider) provider =
+        gst_device_provider_factory_get_by_name("focuslensdeviceprovider");
+    ASSERT_NE(provider, nullptr);
+    GList *devices = gst_device_provider_get_devices(provider);
+    ASSERT_GE(g_list_length(devices), 1U);
+    g_autoptr(GstStructure) properties = gst_device_get_properties(GST_DEVICE(devices->data));
+    EXPECT_STREQ(gst_structure_get_string(properties, "lens.range"), "focus 40 to 220");
+    EXPECT_STREQ(gst_structure_get_string(properties, "launch"),
+                 "v4l2src device=/dev/video0 ! lenssweeptag mode=step lens=v4l2:/dev/video0");
+    g_list_free_full(devices, gst_object_unref);
+    Pipeline pipeline("videotestsrc ! lenssweeptag mode=step lens=v4l2:/dev/video77 ! fakesink");
+    EXPECT_NE(pipeline.run().find("focus 40 to 220, lens=v4l2:/dev/video0"), std::string::npos);
+}
+
 TEST(StepMode, bus_that_does_not_answer_ends_in_an_error)
 {
     Pipeline pipeline("videotestsrc is-live=true ! video/x-raw,framerate=30/1 ! lenssweeptag lens=max14574:" +

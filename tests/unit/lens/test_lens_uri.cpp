@@ -23,6 +23,10 @@ TEST(LensUri, each_kind_is_read)
     EXPECT_EQ(driver.address, 118);
 
     EXPECT_EQ(LensUri::parse("genicam:FocalPower").feature, "FocalPower");
+    const LensUri optotune = LensUri::parse("optotune:/dev/serial/by-id/usb-Optotune");
+    EXPECT_EQ(optotune.kind, LensKind::Optotune);
+    EXPECT_EQ(optotune.device, "/dev/serial/by-id/usb-Optotune");
+
     const LensUri element = LensUri::parse("element:the.cam.lens-position");
     EXPECT_EQ(element.kind, LensKind::Element);
     EXPECT_EQ(element.element, "the.cam");
@@ -41,7 +45,7 @@ TEST(LensUri, what_is_wrong_is_told_with_what_is_allowed)
     for (const char *text :
          {"fpga", "fpga:", "fpga:@0x3c", "fpga:/dev/i2c-1@", "fpga:/dev/i2c-1@0x78", "max14574:/dev/i2c-1@3",
           "max14574:/dev/i2c-1@0x77x", "genicam", "genicam:", "v4l2:", "element:", "element:cam",
-          "element:cam.", "element:.focus", "optotune:/dev/ttyACM0", "/dev/video0", "None"}) {
+          "element:cam.", "element:.focus", "optotune:", "/dev/video0", "None"}) {
         try {
             LensUri::parse(text);
             ADD_FAILURE() << text;

@@ -217,7 +217,8 @@ TEST(TagErrors, what_a_mode_needs_is_told)
               std::string::npos);
     EXPECT_NE(error_of("mode=step lens=max14574:/dev/i2c-none").find("i2c-dev"), std::string::npos);
     EXPECT_NE(error_of("mode=step lens=genicam:FocalPower").find("lenssweepsrc"), std::string::npos);
-    EXPECT_NE(error_of("mode=step lens=optotune:/dev/ttyACM0").find("v4l2:/dev/video0"), std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=webcam:/dev/video0").find("v4l2:/dev/video0"), std::string::npos);
+    EXPECT_NE(error_of("mode=step lens=optotune:/dev/ttyACM-none").find("dialout"), std::string::npos);
     EXPECT_NE(error_of("mode=sync").find("sync-line"), std::string::npos);
     EXPECT_NE(error_of("lens-profile=/no/lens.yaml").find("lens that is moved"), std::string::npos);
     EXPECT_NE(error_of("mode=sync sync-line=DFF-NO-SUCH-LINE").find("gpio"), std::string::npos);

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "optotune_driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace dff {
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr int tries = 4;
+constexpr std::chrono::milliseconds patience{150}; /* an answer takes some milliseconds */
+
+constexpr std::string_view greeting = "Start";
+constexpr std::string_view welcome = "Ready\r\n";
+constexpr double codes_a_dioptre = 200.0;
+constexpr double type_a_offset = 5.0;
+constexpr double current_codes = 4095.0;
+constexpr double degrees_a_code = 0.0625;
+
+Bytes bytes_of(std::string_view text)
+{
+    return {text.begin(), text.end()};
+}
+
+void append(Bytes &bytes, std::int16_t number)
+{
+    const auto bits = static_cast<std::uint16_t>(number);
+    bytes.push_back(static_cast<std::uint8_t>(bits >> 8));
+    bytes.push_back(static_cast<std::uint8_t>(bits & 0xff));
+}
+
+std::int16_t number_at(const Bytes &bytes, std::size_t place)
+{
+    return static_cast<std::int16_t>(bytes.at(place) << 8 | bytes.at(place + 1));
+}
+
+Bytes with_checksum(Bytes bytes)
+{
+    const std::uint16_t crc = crc16_ibm(bytes);
+    bytes.push_back(static_cast<std::uint8_t>(crc & 0xff));
+    bytes.push_back(static_cast<std::uint8_t>(crc >> 8));
+    return bytes;
+}
+
+/* The answer without its checksum and end of line, if those are right; else nothing. */
+Bytes unwrapped(const Bytes &bytes, std::size_t size)
+{
+    if (bytes.size() != size + 4 || bytes[size + 2] != '\r' || bytes[size + 3] != '\n')
+        return {};
+    Bytes answer(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    return std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size) + 2,
+                      with_checksum(answer).begin())
+               ? answer
+               : Bytes{};
+}
+
+} // namespace
+
+std::uint16_t crc16_ibm(std::span<const std::uint8_t> bytes)
+{
+    constexpr std::uint16_t reflected_polynomial = 0xa001;
+    std::uint16_t crc = 0;
+    for (const std::uint8_t byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit)
+            crc = static_cast<std::uint16_t>(crc & 1U ? crc >> 1 ^ reflected_polynomial : crc >> 1);
+    }
+    return crc;
+}
+
+OptotuneDriver::OptotuneDriver(const std::string &device) : port_(device)
+{
+    greet();
+    offset_ = ask(bytes_of("H"), 2).at(1) == 'A' ? type_a_offset : 0.0;
+    Bytes question = bytes_of("CrMA");
+    append(question, 0);
+    greatest_current_ = number_at(ask(question, 5), 3) / 100.0;
+}
+
+void OptotuneDriver::greet()
+{
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        port_.forget_input();
+        port_.write(bytes_of(greeting));
+        if (port_.read(welcome.size(), patience) == bytes_of(welcome))
+            return;
+    }
+    throw LensError(
+        "no Optotune Lens Driver answers on " + port_.device() +
+        ": check that it is this port, and that its light is on. ls -l /dev/serial/by-id names those "
+        "there are");
+}
+
+/* What is asked twice is right even if the first answer came late: all of them are of the present. */
+OptotuneDriver::Bytes OptotuneDriver::ask(const Bytes &question, std::size_t answer_size)
+{
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        port_.forget_input();
+        port_.write(with_checksum(question));
+        Bytes answer = unwrapped(port_.read(answer_size + 4, patience), answer_size);
+        if (!answer.empty() && answer.front() == question.front())
+            return answer;
+    }
+    throw LensError("the Optotune Lens Driver on " + port_.device() +
+                    " gives no answer that can be read: check its cable, unplug it and plug it in again");
+}
+
+std::int16_t OptotuneDriver::focal_power_code(double dioptres) const
+{
+    return static_cast<std::int16_t>(std::lround((dioptres + offset_) * codes_a_dioptre));
+}
+
+std::int16_t OptotuneDriver::current_code(double milliamperes) const
+{
+    return static_cast<std::int16_t>(std::lround(milliamperes / greatest_current_ * current_codes));
+}
+
+double OptotuneDriver::focal_power_of(std::int16_t code) const
+{
+    return code / codes_a_dioptre - offset_;
+}
+
+OptotuneDriver::Range OptotuneDriver::enter_focal_power_mode()
+{
+    const Bytes answer = ask(bytes_of("MwCA"), 8);
+    if (answer.at(3) != 0)
+        throw LensError(
+            "the Optotune Lens Driver on " + port_.device() +
+            " cannot hold a focal power with this lens (error " + std::to_string(answer.at(3)) +
+            "): it has no calibration in its memory, or is too hot. A lens-profile with unit \"mA\" drives "
+            "it by current");
+    return {focal_power_of(number_at(answer, 6)), focal_power_of(number_at(answer, 4))};
+}
+
+void OptotuneDriver::set_focal_power(double dioptres)
+{
+    const std::int16_t code = focal_power_code(dioptres);
+    Bytes command = bytes_of("PwDA");
+    append(command, code);
+    append(command, 0);
+    Bytes question = bytes_of("PrDA");
+    append(question, 0);
+    append(question, 0);
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        port_.write(with_checksum(command));
+        if (number_at(ask(question, 4), 2) == code)
+            return;
+    }
+    throw LensError("the Optotune Lens Driver on " + port_.device() +
+                    " does not take a focal power: does another program drive it?");
+}
+
+void OptotuneDriver::enter_current_mode()
+{
+    ask(bytes_of("MwDA"), 3);
+}
+
+void OptotuneDriver::set_current(double milliamperes)
+{
+    const std::int16_t code = current_code(milliamperes);
+    Bytes command = bytes_of("Aw");
+    append(command, code);
+    Bytes question = bytes_of("Ar");
+    append(question, 0);
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        port_.write(with_checksum(command));
+        if (number_at(ask(question, 3), 1) == code)
+            return;
+    }
+    throw LensError("the Optotune Lens Driver on " + port_.device() +
+                    " does not take a current: does another program drive it?");
+}
+
+double OptotuneDriver::temperature()
+{
+    return number_at(ask(bytes_of("TCA"), 5), 3) * degrees_a_code;
+}
+
+} // namespace dff
