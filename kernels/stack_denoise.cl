@@ -5,7 +5,8 @@
  *
  *     k <- 1 where the tile or one around it moved, else min(k + 1, frames)      m <- m + (x - m) / k      x <- m
  *
- * with m the mean of k sweeps. A tile moved where the mean or the mean square of x - m is more than noise makes it. Noise
+ * with m the mean of k sweeps. Where a tile is `held`, k, m and x stay as they are: something passes there, and what is
+ * behind it is not forgotten. A tile moved where the mean or the mean square of x - m is more than noise makes it. Noise
  * has the variance v (1 + 1/k), v by a curve over brightness; its neighbouring samples may be alike (demosaicing, JPEG),
  * which makes the tile's mean `spread` times less certain than n samples would.
  *
@@ -113,10 +114,11 @@ __kernel void judge_tiles(__global const float4 *tiles, __global const uchar *sw
 }
 
 /* sweeps[z][tile] becomes k of what average_tiles() does next: by the moved tiles around. frames >= 1. */
-__kernel void count_sweeps(__global const uchar *moved, __global uchar *sweeps, int2 count, int frames, ulong wanted)
+__kernel void count_sweeps(__global const uchar *moved, __global const uchar *held, __global uchar *sweeps, int2 count, int frames,
+                           ulong wanted)
 {
     const int tx = (int)get_global_id(0), ty = (int)get_global_id(1), z = (int)get_global_id(2);
-    if (tx >= count.x || !(wanted >> z & 1))
+    if (tx >= count.x || !(wanted >> z & 1) || held[((long)z * count.y + ty) * count.x + tx])
         return;
     __global const uchar *plane = moved + (long)z * count.y * count.x;
     int is_moved = 0;
@@ -127,17 +129,18 @@ __kernel void count_sweeps(__global const uchar *moved, __global uchar *sweeps, 
     sweeps[i] = is_moved ? 1 : min(sweeps[i] + 1, frames); /* 0 before the first sweep */
 }
 
-
 /* Work-items as of measure_tiles(). */
 __kernel void average_tiles(__global uchar *stack, __global const ulong2 *rows, __global mean_t *means,
-                            __global const uchar *sweeps, int width, int height, int2 count, int run, ulong wanted,
-                            ulong absent)
+                            __global const uchar *held, __global const uchar *sweeps, int width, int height, int2 count,
+                            int run, ulong wanted, ulong absent)
 {
     const int ty = (int)get_global_id(1), z = (int)get_global_id(2);
     if (absent >> z & 1)
         return;
     const int first = (int)get_global_id(0) * run, end = min(first + run, count.x);
     for (int tx = first; tx < end; tx++) {
+        if (held[((long)z * count.y + ty) * count.x + tx])
+            continue;
         const float part =
             wanted >> z & 1 ? 1.0f / (float)sweeps[((long)z * count.y + ty) * count.x + tx] : 0.0f;
         for (int y = ty * ROWS; y < min(ty * ROWS + ROWS, height); y++) {

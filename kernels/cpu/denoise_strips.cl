@@ -16,6 +16,7 @@
 #define BRIGHTNESSES 256
 #define AHEAD 192 /* samples that are asked for early */
 #define NEW_SCENE ((short)-1) /* a part: the mean begins anew with this sample */
+#define HELD ((short)-2)      /* a part: the mean stays, and the sample too */
 
 /* One component of one plane. */
 typedef struct {
@@ -127,25 +128,28 @@ INLINE void judge_row(__global const float4 *tiles, __global const uchar *sweeps
 }
 
 /* sweeps[tile] of a row of tiles becomes k: stack_denoise.cl's count_sweeps(). */
-INLINE void count_row(__global const uchar *moved, __global uchar *sweeps, int ty, int2 count, int frames)
+INLINE void count_row(__global const uchar *moved, __global const uchar *held, __global uchar *sweeps, int ty,
+                      int2 count, int frames)
 {
     __global const uchar *above = moved + (long)max(ty - 1, 0) * count.x, *here = moved + (long)ty * count.x;
     __global const uchar *below = moved + (long)min(ty + 1, count.y - 1) * count.x;
     uchar left = 0, middle = above[0] | here[0] | below[0];
     for (int tx = 0; tx < count.x; tx++) {
         const uchar right = tx + 1 < count.x ? above[tx + 1] | here[tx + 1] | below[tx + 1] : 0;
-        sweeps[tx] = left | middle | right ? 1 : min(sweeps[tx] + 1, frames);
+        if (!held[tx])
+            sweeps[tx] = left | middle | right ? 1 : min(sweeps[tx] + 1, frames);
         left = middle;
         middle = right;
     }
 }
 
 /* A row of tiles. parts[] is room for a row of samples. Where nothing is `wanted`, the samples become the mean. */
-INLINE void average_row(Part part, const int tile, const int rows, int ty, int count, __global const uchar *sweeps,
-                        int is_wanted, __global short *parts)
+INLINE void average_row(Part part, const int tile, const int rows, int ty, int count, __global const uchar *held,
+                        __global const uchar *sweeps, int is_wanted, __global short *parts)
 {
     for (int tx = 0; tx < count; tx++) {
-        const short share = !is_wanted ? 0 : sweeps[tx] == 1 ? NEW_SCENE : (short)((32768 + sweeps[tx] / 2) / sweeps[tx]);
+        const int k = sweeps[tx];
+        const short share = held[tx] ? HELD : !is_wanted ? 0 : k == 1 ? NEW_SCENE : (short)((32768 + k / 2) / k);
         for (int x = tx * tile; x < tx * tile + tile; x += 4)
             vstore4((short4)share, 0, parts + x);
     }
@@ -157,16 +161,17 @@ INLINE void average_row(Part part, const int tile, const int rows, int ty, int c
             const short32 sample = load_samples(samples + x), mean = *(__global const slanes32 *)(means + x);
             const short32 share = *(__global const slanes32 *)(parts + x);
             const short32 average = mean + rounded_part_of(sample - mean, share);
-            const short32 next = share == NEW_SCENE ? sample : average;
+            const short32 next = share == NEW_SCENE ? sample : share == HELD ? mean : average;
+            const short32 shown = share == HELD ? sample : next;
             *(__global slanes32 *)(means + x) = next;
-            *(__global bytes32 *)(samples + x) = __builtin_convertvector((next + (short)64) >> (short)7, uchar32);
+            *(__global bytes32 *)(samples + x) = __builtin_convertvector((shown + (short)64) >> (short)7, uchar32);
         }
         for (int x = whole; x < part.width; x++) {
             const int sample = samples[x] << 7, mean = means[x];
             const int average = mean + ((sample - mean) * parts[x] + 16384 >> 15);
-            const int next = parts[x] == NEW_SCENE ? sample : average;
+            const int next = parts[x] == NEW_SCENE ? sample : parts[x] == HELD ? mean : average;
             means[x] = (short)next;
-            samples[x] = (uchar)(next + 64 >> 7);
+            samples[x] = (uchar)((parts[x] == HELD ? sample : next) + 64 >> 7);
         }
     }
 }
@@ -218,8 +223,8 @@ __kernel void judge_borders(__global uchar *stack, EACH(PLANES_OF) __global cons
 /* parts[work-item][part_stride]; the rest as above. */
 __kernel void denoise_strips(__global uchar *stack, EACH(PLANES_OF) __global uchar *sweeps, __global const float2 *most,
                              __global const float2 *of_sweeps, __global uchar *moved, __global float4 *scratch,
-                             __global short *parts, int part_stride, int2 count, int strip, float least, int frames,
-                             ulong wanted, ulong absent)
+                             __global short *parts, int part_stride, __global const uchar *held, int2 count, int strip,
+                             float least, int frames, ulong wanted, ulong absent)
 {
     const int z = (int)get_group_id(1), first = (int)get_group_id(0) * strip;
     const int end = min(first + strip, count.y), is_wanted = wanted >> z & 1;
@@ -234,10 +239,11 @@ __kernel void denoise_strips(__global uchar *stack, EACH(PLANES_OF) __global uch
             const long row = ((long)z * count.y + ty) * count.x;
             EACH(JUDGE)
         }
-        __global uchar *counted = sweeps + ((long)z * count.y + above) * count.x;
+        const long tiles = ((long)z * count.y + above) * count.x;
         if (is_wanted)
-            count_row(moved + (long)z * count.y * count.x, counted, above, count, frames);
-#define AVERAGE(c) average_row(PART(c), TILE##c, ROWS##c, above, count.x, counted, is_wanted, parts);
+            count_row(moved + (long)z * count.y * count.x, held + tiles, sweeps + tiles, above, count, frames);
+#define AVERAGE(c)                                                                                                     \
+    average_row(PART(c), TILE##c, ROWS##c, above, count.x, held + tiles, sweeps + tiles, is_wanted, parts);
         EACH(AVERAGE)
     }
 }

@@ -26,14 +26,6 @@ std::string build_options(const std::vector<Component> &components)
     return options;
 }
 
-float variance_at(const NoiseCurve &curve, float brightness)
-{
-    const float last = static_cast<float>(curve.size()) - 1.0F;
-    const float place = std::clamp(brightness * (last + 1.0F) / 256.0F - 0.5F, 0.0F, last);
-    const auto i = std::min(static_cast<size_t>(place), curve.size() - 2);
-    return std::lerp(curve[i], curve[i + 1], place - static_cast<float>(i));
-}
-
 } // namespace
 
 bool DenoiseStrips::suits(const Device &device, const StackShape &shape)
@@ -124,15 +116,15 @@ void DenoiseStrips::upload(const std::vector<NoiseBounds> &bounds)
                                          host_most_.data());
 }
 
-void DenoiseStrips::run(const cl::Buffer &bytes, const cl::Buffer &moved, const cl::Buffer &sweeps,
-                        const std::vector<NoiseBounds> &bounds, float least, uint32_t frames, uint64_t wanted,
-                        uint64_t absent)
+void DenoiseStrips::run(const cl::Buffer &bytes, const cl::Buffer &moved, const cl::Buffer &held,
+                        const cl::Buffer &sweeps, const std::vector<NoiseBounds> &bounds, float least,
+                        uint32_t frames, uint64_t wanted, uint64_t absent)
 {
     upload(bounds);
     run_strips(judge_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, tiles_, strip_, least,
                static_cast<cl_ulong>(wanted));
-    run_strips(denoise_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, shares_, part_stride_, tiles_,
-               strip_, least, static_cast<cl_int>(frames), static_cast<cl_ulong>(wanted),
+    run_strips(denoise_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, shares_, part_stride_, held,
+               tiles_, strip_, least, static_cast<cl_int>(frames), static_cast<cl_ulong>(wanted),
                static_cast<cl_ulong>(absent));
 }
 

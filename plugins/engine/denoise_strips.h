@@ -37,9 +37,9 @@ public:
 
     /* Denoises in place. The bits of `wanted` and `absent` are planes, as of stack_denoise.cl; bounds of each
      * component. */
-    void run(const cl::Buffer &bytes, const cl::Buffer &moved, const cl::Buffer &sweeps,
-             const std::vector<NoiseBounds> &bounds, float least, uint32_t frames, uint64_t wanted,
-             uint64_t absent);
+    void run(const cl::Buffer &bytes, const cl::Buffer &moved, const cl::Buffer &held,
+             const cl::Buffer &sweeps, const std::vector<NoiseBounds> &bounds, float least, uint32_t frames,
+             uint64_t wanted, uint64_t absent);
 
 private:
     cl_uint set_parts(cl::Kernel &kernel, const cl::Buffer &bytes) const;

@@ -70,6 +70,14 @@ float sample_at(const StackView &view, const RowLayout &rows, const Component &c
 
 } // namespace
 
+float variance_at(const NoiseCurve &curve, float brightness)
+{
+    const float last = static_cast<float>(curve.size()) - 1.0F;
+    const float place = std::clamp(brightness * (last + 1.0F) / 256.0F - 0.5F, 0.0F, last);
+    const auto i = std::min(static_cast<size_t>(place), curve.size() - 2);
+    return std::lerp(curve[i], curve[i + 1], place - static_cast<float>(i));
+}
+
 NoiseCurve noise_of_plane(const StackView &view, size_t index, uint32_t z)
 {
     const Component component = view.shape.components()[index];

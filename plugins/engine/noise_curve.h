@@ -14,6 +14,9 @@ namespace dff {
  * white, in squares of their own unit. */
 using NoiseCurve = std::array<float, 16>;
 
+/* Between the brightnesses of the curve; white is 256. */
+float variance_at(const NoiseCurve &curve, float brightness);
+
 /* What a tile of pixels tells of noise, see kernels/stack_denoise.cl; laid out as its float4. */
 struct TileDifference {
     float mean;       /* of sample - mean of the sweeps before */

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace dff {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr uint32_t tile_pixels = 8;
 constexpr float sigmas_of_noise = 6.0F;  /* that a tile may be off, of strength 1 */
+constexpr unsigned mean_unit = 128;      /* of samples of 8 bits: MEAN_UNIT of the kernels */
 constexpr uint32_t enough_tiles = 8000;  /* of one plane, to learn the noise from */
 constexpr float memory_of_noise = 0.8F;  /* share of the curve that stays from stack to stack */
 constexpr float most_over_single = 4.0F; /* noise between sweeps has at most this many times the variance that
@@ -96,6 +98,7 @@ StackDenoiser::StackDenoiser(std::shared_ptr<Device> device, const StackShape &s
             size_t{shape_.planes} * static_cast<size_t>(tiles_.s[0]) * static_cast<size_t>(tiles_.s[1]);
         moved_ = queue_.allocate(tiles);
         sweeps_ = queue_.allocate(tiles);
+        held_ = queue_.allocate(tiles);
         for (const Component &component : components)
             components_.push_back(std::make_shared<ComponentState>(queue_, shape_, component, tiles_));
         if (DenoiseStrips::suits(*device_, shape_))
@@ -112,7 +115,7 @@ void StackDenoiser::make_strips()
 }
 
 void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, uint64_t absent,
-                            const DenoiseParameters &parameters)
+                            const DenoiseParameters &parameters, std::span<const uint8_t> held)
 {
     const uint64_t all = ~uint64_t{0} >> (64 - shape_.planes);
     const uint64_t changed = has_means_ ? tracker_.changed(view) : all;
@@ -124,6 +127,7 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
         else
             begin(view);
         upload(view, memory);
+        hold(held);
         if (strips_)
             run_strips(parameters, changed & ~absent, absent);
         else
@@ -145,6 +149,39 @@ void StackDenoiser::begin(const StackView &view)
     for (const auto &part : components_)
         part->noise = part->single();
     has_learned_ = false;
+}
+
+void StackDenoiser::hold(std::span<const uint8_t> held)
+{
+    if (!held.empty())
+        queue_.commands().enqueueWriteBuffer(held_, CL_TRUE, 0, held.size(), held.data());
+    else if (holds_)
+        queue_.commands().enqueueFillBuffer(held_, cl_uchar{0}, 0, tiles_a_plane() * shape_.planes);
+    holds_ = !held.empty();
+}
+
+void StackDenoiser::background(size_t component, uint32_t z, uint32_t first_row, std::span<std::byte> samples)
+{
+    const ComponentState &part = *components_[component];
+    const size_t width = part.component.width,
+                 place = (size_t{z} * part.component.height + first_row) * width;
+    translate_errors(*device_, [&] {
+        if (part.component.sample_bytes == 2) {
+            std::vector<cl_float> means(samples.size() / 2);
+            queue_.commands().enqueueReadBuffer(part.means, CL_TRUE, place * sizeof(cl_float),
+                                                means.size() * sizeof(cl_float), means.data());
+            for (size_t i = 0; i < means.size(); i++) {
+                const auto value = static_cast<uint16_t>(means[i] + 0.5F);
+                std::memcpy(samples.data() + 2 * i, &value, sizeof value);
+            }
+            return;
+        }
+        std::vector<cl_ushort> means(samples.size());
+        queue_.commands().enqueueReadBuffer(part.means, CL_TRUE, place * sizeof(cl_ushort),
+                                            means.size() * sizeof(cl_ushort), means.data());
+        for (size_t i = 0; i < means.size(); i++)
+            samples[i] = static_cast<std::byte>((means[i] + mean_unit / 2) / mean_unit);
+    });
 }
 
 void StackDenoiser::look_at_noise(const StackView &view, uint32_t z)
@@ -182,7 +219,8 @@ void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wan
     std::vector<NoiseBounds> bounds;
     for (const auto &part : components_)
         bounds.push_back({part->noise, part->spread, part->samples, sigmas_of_noise * parameters.strength});
-    strips_->run(bytes_.buffer(), moved_, sweeps_, bounds, least_change, parameters.frames, wanted, absent);
+    strips_->run(bytes_.buffer(), moved_, held_, sweeps_, bounds, least_change, parameters.frames, wanted,
+                 absent);
 }
 
 void StackDenoiser::run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
@@ -229,10 +267,10 @@ void StackDenoiser::judge(const DenoiseParameters &parameters)
 void StackDenoiser::average(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
 {
     const cl::NDRange size(static_cast<size_t>(tiles_.s[0]), static_cast<size_t>(tiles_.s[1]), shape_.planes);
-    queue_.run(components_.front()->count, size, moved_, sweeps_, tiles_,
+    queue_.run(components_.front()->count, size, moved_, held_, sweeps_, tiles_,
                static_cast<cl_int>(parameters.frames), static_cast<cl_ulong>(wanted));
     for (const auto &part : components_)
-        enqueue_tiles(part->average, bytes_.buffer(), part->rows, part->means, sweeps_, part->width,
+        enqueue_tiles(part->average, bytes_.buffer(), part->rows, part->means, held_, sweeps_, part->width,
                       part->height, tiles_, run_, static_cast<cl_ulong>(wanted),
                       static_cast<cl_ulong>(absent));
 }

@@ -30,10 +30,15 @@ public:
     StackDenoiser(std::shared_ptr<Device> device, const StackShape &shape);
 
     /* Denoises the stack in place: `memory` are the bytes of `view`. Planes whose bit is set in `absent` do
-     * not show what they should (lost, or another plane's picture) and stay as they are. Throws EngineError.
-     */
+     * not show what they should (lost, or another plane's picture) and stay as they are. So do tiles of 8x8
+     * pixels where `held` is not 0 ([plane][tile], or empty), and what stands behind is remembered there.
+     * Throws EngineError. */
     void denoise(const StackView &view, std::span<std::byte> memory, uint64_t absent,
-                 const DenoiseParameters &parameters);
+                 const DenoiseParameters &parameters, std::span<const uint8_t> held = {});
+
+    /* What stands still in plane z, as the mean of the sweeps: as many rows of a component's samples as
+     * `samples` has room for, from `first_row` on. Reads back from the device. */
+    void background(size_t component, uint32_t z, uint32_t first_row, std::span<std::byte> samples);
 
     /* The next stack shows another scene: nothing before it is averaged with it. */
     void forget() { has_means_ = false; }
@@ -48,6 +53,7 @@ private:
 
     void upload(const StackView &view, std::span<std::byte> memory);
     void begin(const StackView &view);
+    void hold(std::span<const uint8_t> held);
     void look_at_noise(const StackView &view, uint32_t z);
     void measure();
     void judge(const DenoiseParameters &parameters);
@@ -70,7 +76,8 @@ private:
     cl_int2 tiles_; /* across and down */
     cl_int run_;    /* tiles a work-item */
     HostBuffer bytes_;
-    cl::Buffer moved_, sweeps_;
+    cl::Buffer moved_, sweeps_, held_;
+    bool holds_ = true; /* held_ has anything but 0 in it */
     std::vector<std::shared_ptr<ComponentState>> components_;
     std::optional<DenoiseStrips> strips_; /* on CPUs */
     PlaneTracker tracker_;

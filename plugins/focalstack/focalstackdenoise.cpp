@@ -12,6 +12,13 @@
  * the noise of the sensor, as a curve over brightness that the element finds in the pictures themselves and
  * tells in `stats`. Planes that were lost or repeat another's picture are left as they are.
  *
+ * A sweep takes time, and what moves meanwhile is in another place in each plane: depth and picture have
+ * ghosts around it. With `local-motion` each plane is changed to what it would show in the middle of the
+ * sweep, (planes - 1) / 2 planes after the first one: objects are followed along their path, and what they
+ * cover in a plane is filled with the background of the sweeps before. It needs a camera that stands still,
+ * two sweeps to know the background, and planes 0 to planes - 1 taken in this order; where nothing moves, not
+ * a bit changes by it.
+ *
  * A hand that shakes moves everything: put focalstackalign before it only where the camera rests between the
  * shakes. The stack is changed in place where nobody else holds it. Each format of stacks will do, rolling
  * windows too.
@@ -24,7 +31,7 @@
  */
 #include "focalstack/focalstackdenoise.h"
 
-#include "engine/stack_denoiser.h"
+#include "focalstack/sweep_follower.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
 #include "gstcl/engine_message.h"
@@ -48,7 +55,13 @@ namespace {
                               ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"                    \
                               ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"
 
-enum Property : guint { PropertyFrames = 1, PropertyStrength, PropertyDevice, PropertyStats };
+enum Property : guint {
+    PropertyFrames = 1,
+    PropertyStrength,
+    PropertyLocalMotion,
+    PropertyDevice,
+    PropertyStats
+};
 
 struct FocalStackDenoiseState {
     explicit FocalStackDenoiseState(GstElement *element) : context(element) {}
@@ -59,9 +72,12 @@ struct FocalStackDenoiseState {
     std::shared_ptr<dff::Device> device;
     std::optional<GstFocalStackInfo> info;
     std::unique_ptr<dff::StackDenoiser> denoiser; /* for info; empty until the first stack of these caps */
+    std::unique_ptr<dff::SweepFollower> follower; /* for info, while local-motion is wanted */
 
     std::mutex mutex; /* guards what follows; nothing is locked under it */
     dff::DenoiseParameters parameters;
+    bool local_motion = false;
+    double moved = 0.0; /* part of the last stack */
     std::string device_wish;
     dff::DenoiseReport report;
     guint64 stacks = 0;
@@ -147,11 +163,52 @@ void account(GstFocalStackDenoise *self, GstClockTime compute_time, bool is_firs
     {
         const std::lock_guard lock(state.mutex);
         state.report = std::move(report);
+        state.moved = state.follower ? state.follower->moved() : 0.0;
         state.stacks++;
         is_slower = state.latency.add(compute_time, is_first);
     }
     if (is_slower)
         gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
+}
+
+/* What the user wants of this stack, and what the one before told of noise. */
+struct Wishes {
+    dff::DenoiseParameters parameters;
+    bool local_motion;
+    dff::DenoiseReport report;
+};
+
+Wishes wishes(FocalStackDenoiseState &state)
+{
+    const std::lock_guard lock(state.mutex);
+    return {state.parameters, state.local_motion, state.report};
+}
+
+/* All planes are known to be of one sweep, one after the other. */
+bool is_one_sweep(const dff::StackView &view)
+{
+    const auto &planes = view.identities;
+    return std::all_of(planes.begin(), planes.end(), [&](const auto &plane) {
+        return !plane || !planes.front() || plane->sweep == planes.front()->sweep;
+    });
+}
+
+/* Nothing is followed through planes that do not show what they should, nor in rolling windows, whose planes
+ * are of two sweeps; what stands behind is learned anew after them. */
+void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, guint64 absent)
+{
+    const Wishes wanted = wishes(state);
+    const dff::StackView &view = stack.view();
+    if (!wanted.local_motion || absent != 0 || !is_one_sweep(view)) {
+        state.follower.reset();
+        state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters);
+        return;
+    }
+    if (!state.follower)
+        state.follower = std::make_unique<dff::SweepFollower>(view.shape);
+    const std::vector<uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
+    state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters, held);
+    state.follower->follow(view, stack.memory(), *state.denoiser);
 }
 
 void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
@@ -163,13 +220,7 @@ void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
     if (is_first)
         progress.emplace(GST_ELEMENT(self));
     ensure_denoiser(self);
-    dff::DenoiseParameters parameters;
-    {
-        const std::lock_guard lock(state.mutex);
-        parameters = state.parameters;
-    }
-    const WritableStack stack(*state.info, buffer, *state.device);
-    state.denoiser->denoise(stack.view(), stack.memory(), absent_planes(buffer), parameters);
+    denoise_stack(state, WritableStack(*state.info, buffer, *state.device), absent_planes(buffer));
     account(self, static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND, is_first);
 }
 
@@ -196,14 +247,17 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
         return FALSE;
     state.info = info;
     state.denoiser.reset();
+    state.follower.reset();
     return TRUE;
 }
 
 gboolean sink_event(GstBaseTransform *base, GstEvent *event)
 {
     FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
-    if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP && state.denoiser)
+    if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP && state.denoiser) {
         state.denoiser->forget();
+        state.follower.reset();
+    }
     return GST_BASE_TRANSFORM_CLASS(gst_focal_stack_denoise_parent_class)->sink_event(base, event);
 }
 
@@ -235,6 +289,7 @@ gboolean start(GstBaseTransform *base)
         wish = state.device_wish;
         state.stacks = 0;
         state.report = {};
+        state.moved = 0.0;
         state.latency.reset();
     }
     try {
@@ -250,6 +305,7 @@ gboolean stop(GstBaseTransform *base)
 {
     FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     state.denoiser.reset();
+    state.follower.reset();
     state.info.reset();
     state.device.reset();
     state.context.close();
@@ -275,9 +331,9 @@ void set_noise(GstStructure *stats, const dff::DenoiseReport &report)
 GstStructure *statistics(FocalStackDenoiseState &state)
 {
     const std::lock_guard lock(state.mutex);
-    GstStructure *stats =
-        gst_structure_new("application/x-focalstackdenoise-stats", "stacks", G_TYPE_UINT64, state.stacks,
-                          "sweeps", G_TYPE_DOUBLE, state.report.mean_sweeps, nullptr);
+    GstStructure *stats = gst_structure_new("application/x-focalstackdenoise-stats", "stacks", G_TYPE_UINT64,
+                                            state.stacks, "sweeps", G_TYPE_DOUBLE, state.report.mean_sweeps,
+                                            "moved", G_TYPE_DOUBLE, state.moved, nullptr);
     set_noise(stats, state.report);
     return stats;
 }
@@ -290,6 +346,8 @@ void set_property(GObject *object, guint id, const GValue *value, GParamSpec *sp
         state.parameters.frames = g_value_get_uint(value);
     else if (id == PropertyStrength)
         state.parameters.strength = static_cast<float>(g_value_get_double(value));
+    else if (id == PropertyLocalMotion)
+        state.local_motion = g_value_get_boolean(value);
     else if (id == PropertyDevice)
         state.device_wish = g_value_get_string(value) ? g_value_get_string(value) : "";
     else
@@ -308,6 +366,8 @@ void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
         g_value_set_uint(value, state.parameters.frames);
     else if (id == PropertyStrength)
         g_value_set_double(value, static_cast<double>(state.parameters.strength));
+    else if (id == PropertyLocalMotion)
+        g_value_set_boolean(value, state.local_motion);
     else if (id == PropertyDevice)
         g_value_set_string(value, state.device_wish.c_str());
     else
@@ -339,6 +399,12 @@ void install_properties(GObjectClass *object_class)
             "it; less sees fainter motion, more averages where noise is uneven",
             0.25, 4.0, 1.0, playing));
     g_object_class_install_property(
+        object_class, PropertyLocalMotion,
+        g_param_spec_boolean("local-motion", "Local motion",
+                             "Shows what moves during the sweep in all planes where it is in the middle of "
+                             "the sweep, before what stood still in the sweeps before",
+                             FALSE, playing));
+    g_object_class_install_property(
         object_class, PropertyDevice,
         g_param_spec_string(
             "device", "Device",
@@ -349,16 +415,18 @@ void install_properties(GObjectClass *object_class)
      * GstFocalStackDenoise:stats:
      *
      * "stacks" (uint64) were denoised; in the last one, "sweeps" (double) were averaged, as a mean over the
-     * picture. "noise" is an array of 16 doubles: the standard deviation of the noise of a single frame at 16
-     * brightnesses from black to white, in units of which white has 256.
+     * picture, and "moved" (double, 0 to 1) is the part of it in which local-motion saw anything. "noise" is
+     * an array of 16 doubles: the standard deviation of the noise of a single frame at 16 brightnesses from
+     * black to white, in units of which white has 256.
      */
     g_object_class_install_property(
         object_class, PropertyStats,
-        g_param_spec_boxed(
-            "stats", "Statistics",
-            "Stacks denoised, sweeps averaged in the last one, and noise (standard deviation, white is "
-            "256) at 16 brightnesses",
-            GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+        g_param_spec_boxed("stats", "Statistics",
+                           "Stacks denoised, sweeps averaged and part that moved in the last one, and noise "
+                           "(standard deviation, white is "
+                           "256) at 16 brightnesses",
+                           GST_TYPE_STRUCTURE,
+                           static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 }
 
 } // namespace
