@@ -19,7 +19,7 @@ test_packages=(
 
 # For the virtual machine of tests/rig/vm, which is one of this kind.
 [ "$(dpkg --print-architecture 2>/dev/null)" != amd64 ] || test_packages+=(
-    qemu-system-x86 seabios busybox-static kmod cpio v4l-utils linux-headers-amd64 linux-source-6.1)
+    qemu-system-x86 seabios busybox-static kmod cpio v4l-utils linux-headers-amd64 linux-source)
 
 # say TEXT: one line about what happens now, with the minutes and seconds since the start.
 say() {
@@ -69,14 +69,18 @@ build() {
     fi
     mkdir -p "$folder"
     if [ ! -f "$folder/build.ninja" ]; then
-        meson setup "$folder" "$@" >"$folder/setup.log" 2>&1 || { cat "$folder/setup.log"; return 1; }
+        # A configuration that failed leaves a folder that Meson and ninja take for a whole one.
+        meson setup "$folder" "$@" >"$folder/setup.log" 2>&1 ||
+            { cat "$folder/setup.log"; rm -rf "$folder/build.ninja" "$folder/meson-private" "$folder/meson-info"; return 1; }
     fi
     NINJA_STATUS='   [%f/%t] ' ninja -C "$folder" >"$folder/compile.log" 2>&1 || { tail -n 60 "$folder/compile.log"; return 1; }
 }
 
 # enter FOLDER: from here on, this shell sees the plug-ins, libraries and typelibs built in the folder.
 enter() {
+    local variables
+    variables=$(meson devenv -C "$1" --dump) || { echo "$variables"; return 1; }
     set +u # Meson's lines name variables that may not be set.
-    eval "$(meson devenv -C "$1" --dump)"
+    eval "$variables"
     set -u
 }

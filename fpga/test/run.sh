@@ -42,7 +42,8 @@ if ! cmp -s "$here/requirements.txt" "$venv/requirements.txt"; then
         if usable_python "$candidate"; then python=$candidate; break; fi
     done
     if [ -z "$python" ]; then
-        install_debian python3 python3-venv libpython3.11
+        install_debian python3 python3-venv
+        install_debian "libpython$(/usr/bin/python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')"
         python=/usr/bin/python3
     fi
     echo "fpga: installing cocotb and the register and style tools into $venv"

@@ -22,7 +22,8 @@ skip() {
 for tool in qemu-system-x86_64 busybox cpio depmod make apt-get; do
     command -v "$tool" >/dev/null || skip "$tool is not installed"
 done
-[ -f /usr/src/linux-source-6.1.tar.xz ] || skip "linux-source-6.1 is not installed"
+source=$(find /usr/src -maxdepth 1 -name 'linux-source-*.tar.xz' | sort -V | tail -n 1)
+[ -n "$source" ] || skip "linux-source is not installed"
 # The modules are built for the headers that are there, and the kernel must be of their version.
 release=$(basename "$(find /lib/modules -maxdepth 2 -path '*-amd64/build' | sort -V | tail -n 1 | xargs -r dirname)")
 [ -n "$release" ] || skip "linux-headers-amd64 is not installed"
@@ -38,17 +39,21 @@ fetch_kernel() {
     local fetch=(timeout 60 apt-get -q -o DPkg::Lock::Timeout=30 download "linux-image-$release")
     "${fetch[@]}" >fetch.log 2>&1 || { timeout 60 apt-get -q update && "${fetch[@]}"; } >fetch.log 2>&1 ||
         { tail -n 3 fetch.log; return 77; }
-    dpkg-deb --fsys-tarfile linux-image-"$release"_*.deb | tar -x --wildcards ./boot/'vmlinuz*' \
-        ./lib/modules/'*'/modules.'*' ./lib/modules/'*'/kernel/{drivers/{media,i2c,virtio},fs/{9p,netfs,fscache,overlayfs,configfs},net/9p} &&
-        rm -f linux-image-*.deb
+    # Where modules lie, how they are packed and which folders of them there are changes from Debian to Debian.
+    dpkg-deb --fsys-tarfile linux-image-"$release"_*.deb >kernel.tar &&
+        tar -tf kernel.tar | grep -E '^\./(boot/vmlinuz|(usr/)?lib/modules/[^/]*/(modules\.|kernel/(drivers/(media|i2c|virtio)|fs/(9p|netfs|fscache|overlayfs|configfs)|net/9p)/.*[^/]$))' >kernel.files &&
+        tar -xf kernel.tar --transform 's,^\./usr/,./,' -T kernel.files &&
+        find lib/modules -name '*.ko.xz' -exec xz -d {} + &&
+        sed -i 's/\.ko\.xz/.ko/' "$modules/modules.order" &&
+        rm -f linux-image-*.deb kernel.tar
 }
 
 build_modules() {
     mkdir -p "$cache/modules" && cd "$cache/modules" || return
     [ ! -f .built ] || [ -n "$(find "$here/modules" -newer .built)" ] || return 0
     cp "$here"/modules/* . &&
-        tar -xJf /usr/src/linux-source-6.1.tar.xz --strip-components=3 --occurrence=1 \
-            linux-source-6.1/drivers/gpio/{gpio-sim.c,gpiolib.h} linux-source-6.1/kernel/irq/irq_sim.c || return
+        tar -xJf "$source" --strip-components=3 --occurrence=1 \
+            "$(basename "$source" .tar.xz)"/{drivers/gpio/{gpio-sim.c,gpiolib.h},kernel/irq/irq_sim.c} || return
     # Out of the kernel's tree, irq_to_desc() is not to be had.
     sed -i 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq_safe(\1);/' irq_sim.c
     make -C "/lib/modules/$release/build" M="$PWD" modules >build.log 2>&1 || { tail -n 20 build.log; return 1; }
