@@ -5,8 +5,11 @@
  *
  *     P_z = G(I_z) * prod_{i=2..LEVELS} U_i(G(R_{1/i}(I_z)))
  *
- * G: magnitude of the Sobel 3x3 gradient / 8; R_{1/i}: area downsample to width / i x height / i; U_i: bilinear.
- * Coarse pictures are float[planes][height / i][width / i], all levels one after the other from i = 2.
+ * G: magnitude of the Sobel 3x3 gradient / 8; R_{1/i}: mean over i x i pixels; U_i: bilinear. Beyond the border stands
+ * the picture, mirrored, at every level.
+ * A level's coarse pictures are float[planes][rows + 4][columns + 4], two samples beyond every border, with rows and
+ * columns of i pixels, the last one begun; gradients float[planes][rows + 2][columns + 2], all levels one after the
+ * other from i = 2.
  */
 
 inline float magnitude(float dx, float dy)
@@ -14,47 +17,32 @@ inline float magnitude(float dx, float dy)
     return sqrt(dx * dx + dy * dy) * 0.125f;
 }
 
-/* Share of source sample i that the span [from, to) covers. */
-inline float overlap(int i, float from, float to)
-{
-    return fmax(fmin(to, i + 1.0f) - fmax(from, (float)i), 0.0f);
-}
-
-/* R_{1/i}: mean over the source area of each coarse sample; the area's edges may cut samples. */
+/* R_{1/level}. */
 __kernel void downsample(__global const uchar *stack, __global const ulong2 *rows, __global float *coarse, int width,
-                         int height, int coarse_width, int coarse_height)
+                         int height, int coarse_width, int coarse_height, int level)
 {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
     if (x >= coarse_width)
         return;
-    const float step_x = (float)width / coarse_width, step_y = (float)height / coarse_height;
-    const float left = x * step_x, right = fmin(left + step_x, (float)width);
-    const float top = y * step_y, bottom = fmin(top + step_y, (float)height);
-    const int end_x = min((int)ceil(right), width), end_y = min((int)ceil(bottom), height);
-
+    const int left = (x - 2) * level, top = (y - 2) * level;
     float sum = 0.0f;
-    for (int j = (int)top; j < end_y; j++) {
-        float row = 0.0f;
-        for (int i = (int)left; i < end_x; i++)
-            row += overlap(i, left, right) * luma_at(stack, rows[z], i, j);
-        sum += overlap(j, top, bottom) * row;
-    }
-    coarse[((ulong)z * coarse_height + y) * coarse_width + x] = sum / ((right - left) * (bottom - top));
+    for (int j = top; j < top + level; j++)
+        for (int i = left; i < left + level; i++)
+            sum += luma_at(stack, rows[z], mirror(i, width), mirror(j, height));
+    coarse[((ulong)z * coarse_height + y) * coarse_width + x] = sum / (level * level);
 }
 
-/* G of a coarse picture, written at gradient[first...]. */
+/* G of a coarse picture two samples wider and higher, written at gradient[first...]. */
 __kernel void coarse_gradient(__global const float *coarse, __global float *gradient, ulong first, int width, int height)
 {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1), z = (int)get_global_id(2);
     if (x >= width)
         return;
-    __global const float *plane = coarse + (ulong)z * width * height;
-    __global const float *above = plane + (ulong)mirror(y - 1, height) * width;
-    __global const float *here = plane + (ulong)y * width;
-    __global const float *below = plane + (ulong)mirror(y + 1, height) * width;
-    const int l = mirror(x - 1, width), r = mirror(x + 1, width);
-    const float dx = above[r] - above[l] + 2.0f * (here[r] - here[l]) + below[r] - below[l];
-    const float dy = below[l] - above[l] + 2.0f * (below[x] - above[x]) + below[r] - above[r];
+    const int stride = width + 2;
+    __global const float *above = coarse + ((ulong)z * (height + 2) + y) * stride + x;
+    __global const float *here = above + stride, *below = here + stride;
+    const float dx = above[2] - above[0] + 2.0f * (here[2] - here[0]) + below[2] - below[0];
+    const float dy = below[0] - above[0] + 2.0f * (below[1] - above[1]) + below[2] - above[2];
     gradient[first + ((ulong)z * height + y) * width + x] = magnitude(dx, dy);
 }
 
@@ -70,7 +58,7 @@ inline float fine_gradient(__global const uchar *stack, ulong2 rows, int x, int 
     return magnitude(dx, dy);
 }
 
-/* The four samples of a coarse picture around a fine pixel, and how far between them it lies. */
+/* The four gradients of a level around a fine pixel, and how far between them it lies. */
 typedef struct {
     ulong first;  /* of the level's plane 0 */
     ulong area;   /* samples a plane */
@@ -79,23 +67,17 @@ typedef struct {
     float fx, fy;
 } Footprint;
 
-inline float position(int fine, int fine_size, int coarse_size)
-{
-    const float p = (fine + 0.5f) * coarse_size / fine_size - 0.5f;
-    return clamp(p, 0.0f, coarse_size - 1.0f);
-}
-
 inline Footprint footprint(ulong first, int x, int y, int width, int height, int level)
 {
-    const int w = max(width / level, 1), h = max(height / level, 1);
-    const float px = position(x, width, w), py = position(y, height, h);
+    const int w = (width + level - 1) / level + 2, h = (height + level - 1) / level + 2;
+    const float px = (x + 0.5f) / level + 0.5f, py = (y + 0.5f) / level + 0.5f;
     Footprint f;
     f.first = first;
     f.area = (ulong)w * h;
     f.left = (int)px;
-    f.right = min(f.left + 1, w - 1);
+    f.right = f.left + 1;
     f.top = (ulong)w * (int)py;
-    f.bottom = (ulong)w * min((int)py + 1, h - 1);
+    f.bottom = f.top + w;
     f.fx = px - f.left;
     f.fy = py - (int)py;
     return f;

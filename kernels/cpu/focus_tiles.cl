@@ -14,9 +14,6 @@
  * What differs from the formula:
  *  - the gradient's magnitude is max(m, 7/8 m + n/2) with m >= n the absolute derivatives: 3 % low to 0.8 % high;
  *  - gradients are integers in 1/8 DN (fine), 1/32 (1/2), 1/72 (1/3) and 1/128 DN (1/4);
- *  - R_{1/i} always averages i x i pixels and U_i spreads by i, so that at a size i does not divide the coarse picture
- *    is not stretched to the fine one;
- *  - beyond the border stands the fine picture, mirrored, at every level, which changes the outermost 2 LEVELS pixels;
  *  - the maximum has 8 bits of mantissa.
  */
 #include "lanes32.cl"

@@ -2,25 +2,25 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/focus_measure.h"
 
-#include <algorithm>
-
 namespace dff {
 
 namespace {
 
+/* Samples of a level with `margin` more on every side. */
 struct Level {
-    uint32_t width, height;
+    Level(const StackShape &shape, unsigned factor, unsigned margin)
+        : width((shape.width + factor - 1) / factor + 2 * margin),
+          height((shape.height + factor - 1) / factor + 2 * margin), planes(shape.planes)
+    {
+    }
+
+    size_t samples() const { return size_t{width} * height * planes; }
+    cl::NDRange range() const { return {width, height, planes}; }
+
+    uint32_t width, height, planes;
 };
 
-Level level_of(const StackShape &shape, unsigned factor)
-{
-    return {std::max(shape.width / factor, 1u), std::max(shape.height / factor, 1u)};
-}
-
-size_t samples(const StackShape &shape, const Level &level)
-{
-    return size_t{level.width} * level.height * shape.planes;
-}
+constexpr unsigned coarse_margin = 2, gradient_margin = 1;
 
 } // namespace
 
@@ -35,9 +35,9 @@ FocusMeasure::FocusMeasure(CommandQueue &queue, const StackShape &shape, unsigne
 
     size_t gradients = 1;
     for (unsigned i = 2; i <= levels; i++)
-        gradients += samples(shape, level_of(shape, i));
+        gradients += Level(shape, i, gradient_margin).samples();
     const size_t pixels = size_t{shape.width} * shape.height;
-    coarse_ = queue.allocate(samples(shape, level_of(shape, 2)) * sizeof(cl_float));
+    coarse_ = queue.allocate(Level(shape, 2, coarse_margin).samples() * sizeof(cl_float));
     gradient_ = queue.allocate(gradients * sizeof(cl_float));
     peak_ = queue.allocate(pixels * sizeof(cl_float));
     peak_plane_ = queue.allocate(pixels);
@@ -51,12 +51,13 @@ void FocusMeasure::run(const Luma &luma)
 
     queue_.begin_stage("focus-measure");
     for (unsigned i = 2; i <= levels_; i++) {
-        const Level level = level_of(shape_, i);
-        const cl::NDRange size(level.width, level.height, shape_.planes);
-        const auto w = static_cast<cl_int>(level.width), h = static_cast<cl_int>(level.height);
-        queue_.run(downsample_, size, luma.bytes(), luma.rows(), coarse_, width, height, w, h);
-        queue_.run(coarse_gradient_, size, coarse_, gradient_, first, w, h);
-        first += samples(shape_, level);
+        const Level coarse(shape_, i, coarse_margin), gradient(shape_, i, gradient_margin);
+        queue_.run(downsample_, coarse.range(), luma.bytes(), luma.rows(), coarse_, width, height,
+                   static_cast<cl_int>(coarse.width), static_cast<cl_int>(coarse.height),
+                   static_cast<cl_int>(i));
+        queue_.run(coarse_gradient_, gradient.range(), coarse_, gradient_, first,
+                   static_cast<cl_int>(gradient.width), static_cast<cl_int>(gradient.height));
+        first += gradient.samples();
     }
     queue_.run(focus_product_, {shape_.width, shape_.height}, luma.bytes(), luma.rows(), gradient_, peak_,
                peak_plane_, mean_, width, height, static_cast<cl_int>(shape_.planes));

@@ -38,36 +38,26 @@ Volume gradient(const Volume &picture)
     return result;
 }
 
-/* Weights with which the fine samples of one axis make coarse sample i. */
-std::vector<float> area_weights(unsigned i, unsigned fine, unsigned coarse)
+/* Gradient of the picture of means over level x level pixels, one sample more on every side. */
+Volume coarse_gradient(const Volume &picture, int level)
 {
-    const double from = static_cast<double>(i) * fine / coarse,
-                 to = static_cast<double>(i + 1) * fine / coarse;
-    std::vector<float> weights(fine);
-    for (unsigned k = 0; k < fine; k++)
-        weights[k] =
-            static_cast<float>(std::max(std::min(to, k + 1.0) - std::max(from, 1.0 * k), 0.0) / (to - from));
-    return weights;
-}
-
-Volume downsample(const Volume &picture, unsigned factor)
-{
-    Volume half(std::max(picture.width / factor, 1u), picture.height, picture.planes);
-    for (unsigned x = 0; x < half.width; x++) {
-        const std::vector<float> weights = area_weights(x, picture.width, half.width);
-        for (unsigned z = 0; z < picture.planes; z++)
-            for (unsigned y = 0; y < picture.height; y++)
-                for (unsigned i = 0; i < picture.width; i++)
-                    half.at(x, y, z) += weights[i] * picture.at(i, y, z);
+    const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+    const int columns = (width + level - 1) / level, rows = (height + level - 1) / level;
+    Volume coarse(columns + 4, rows + 4, picture.planes), result(columns + 2, rows + 2, picture.planes);
+    for (unsigned z = 0; z < picture.planes; z++) {
+        for (int y = 0; y < rows + 4; y++)
+            for (int x = 0; x < columns + 4; x++)
+                for (int j = 0; j < level; j++)
+                    for (int i = 0; i < level; i++)
+                        coarse.at(x, y, z) += picture.at(mirror((x - 2) * level + i, width),
+                                                         mirror((y - 2) * level + j, height), z) /
+                                              static_cast<float>(level * level);
     }
-    Volume result(half.width, std::max(picture.height / factor, 1u), picture.planes);
-    for (unsigned y = 0; y < result.height; y++) {
-        const std::vector<float> weights = area_weights(y, picture.height, result.height);
-        for (unsigned z = 0; z < picture.planes; z++)
-            for (unsigned x = 0; x < result.width; x++)
-                for (unsigned i = 0; i < picture.height; i++)
-                    result.at(x, y, z) += weights[i] * half.at(x, i, z);
-    }
+    const Volume of_all = gradient(coarse);
+    for (unsigned z = 0; z < picture.planes; z++)
+        for (int y = 0; y < rows + 2; y++)
+            for (int x = 0; x < columns + 2; x++)
+                result.at(x, y, z) = of_all.at(x + 1, y + 1, z);
     return result;
 }
 
@@ -110,12 +100,12 @@ Focus focus_product(const Volume &luma, unsigned levels)
 {
     Volume product = gradient(luma);
     for (unsigned i = 2; i <= levels; i++) {
-        const Volume coarse = gradient(downsample(luma, i));
+        const Volume coarse = coarse_gradient(luma, static_cast<int>(i));
+        const auto position = [i](unsigned fine) { return (static_cast<float>(fine) + 0.5f) / i + 0.5f; };
         for (unsigned z = 0; z < luma.planes; z++)
             for (unsigned y = 0; y < luma.height; y++)
                 for (unsigned x = 0; x < luma.width; x++)
-                    product.at(x, y, z) *= bilinear(coarse, (x + 0.5f) * coarse.width / luma.width - 0.5f,
-                                                    (y + 0.5f) * coarse.height / luma.height - 0.5f, z);
+                    product.at(x, y, z) *= bilinear(coarse, position(x), position(y), z);
     }
 
     Focus focus{Volume(luma.width, luma.height, 1), Volume(luma.width, luma.height, 1), {}};
