@@ -19,7 +19,7 @@ build=${1:-build}
 command -v oclgrind >/dev/null || { echo "oclgrind.sh: oclgrind is not installed (apt install oclgrind)" >&2; exit 2; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-export XDG_CACHE_HOME=$folder
+export XDG_CACHE_HOME=$folder DFF_KERNELS=tiles # the driver is not asked whether it is right: that is what is tested
 touch "$folder/failed"
 
 options="-cl-opt-disable -include $PWD/tests/oclgrind.h"

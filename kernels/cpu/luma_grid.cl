@@ -265,25 +265,29 @@ __kernel void advance_rows(__global const float2 *row_dots, __global const float
 {
     const Step before = steps[step];
     Step now = before;
+    float beta = 0.0f;
     if (!before.done) {
         const float norm = sum_of_norms(row_norms);
         const float2 dots = sum_of_rows(row_dots);
-        const float beta = step ? dots.x / before.squared_residual : 0.0f;
+        beta = step ? dots.x / before.squared_residual : 0.0f;
         const float curvature = dots.y - (step ? beta * dots.x / before.alpha : 0.0f);
         now.squared_residual = dots.x;
         now.alpha = dots.x / curvature;
         now.done = !(dots.x > tolerance * tolerance * norm && curvature > 0.0f);
-        if (!now.done)
-            for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
-                const float16 p = at(r, i) + beta * at(direction, i), s = at(w, i) + beta * at(product, i);
-                put(direction, i, p);
-                put(product, i, s);
-                put(x, i, at(x, i) + now.alpha * p);
-                put(r, i, at(r, i) - now.alpha * s);
-            }
     }
+    /* Here, and not in the branch above: with the store at the end and the cells in the branch PoCL 7.1 went over some
+     * grids' cells twice. */
     if (get_group_id(0) == 0)
         steps[step + 1] = now;
+    if (now.done)
+        return;
+    for (int i = first_cell(), end = i + ROW; i < end; i += 16) {
+        const float16 p = at(r, i) + beta * at(direction, i), s = at(w, i) + beta * at(product, i);
+        put(direction, i, p);
+        put(product, i, s);
+        put(x, i, at(x, i) + now.alpha * p);
+        put(r, i, at(r, i) - now.alpha * s);
+    }
 }
 
 /* solution = d x: plane positions; NAN where nothing is known at all. relative_residual: what is left of the residual,

@@ -21,9 +21,10 @@ std::shared_ptr<Device> with_room(std::shared_ptr<Device> device, const StackSha
 std::unique_ptr<DepthMethod> make_method(CommandQueue &queue, const StackShape &shape,
                                          const DepthParameters &parameters)
 {
+    const KernelStyle style = queue.device().kernel_style(); /* refuses a driver that computes wrong */
     if (parameters.method == Method::Volume)
         return std::make_unique<VolumeMethod>(queue, shape, parameters);
-    if (queue.device().kernel_style() == KernelStyle::Tiles && parameters.grid.sigma_chroma == 0)
+    if (style == KernelStyle::Tiles && parameters.grid.sigma_chroma == 0)
         return std::make_unique<CpuPaperMethod>(queue, shape, parameters);
     return std::make_unique<PaperMethod>(queue, shape, parameters);
 }

@@ -78,10 +78,17 @@ Device::Device(cl::Device device, std::optional<KernelStyle> style, std::optiona
     : device_(std::move(device)), context_(device_),
       programs_(std::make_unique<ProgramCache>(context_, device_)),
       works_in_place_(works_in_place.value_or(is_cpu(device_))),
-      kernel_style_(style.value_or(is_cpu(device_) ? KernelStyle::Tiles : KernelStyle::Pixels)),
       global_memory_(device_.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>()),
-      largest_allocation_(device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
+      largest_allocation_(device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>()), kernel_style_(style)
 {
+}
+
+KernelStyle Device::kernel_style() const
+{
+    const std::lock_guard lock(style_mutex_);
+    if (!kernel_style_)
+        kernel_style_ = choose_kernel_style(*this);
+    return *kernel_style_;
 }
 
 std::string Device::name() const

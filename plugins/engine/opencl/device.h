@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "engine/opencl/kernel_style.h"
 #include "engine/opencl/opencl.h"
 #include "engine/opencl/program_cache.h"
 #include "engine/opencl/upload_pool.h"
@@ -15,9 +16,6 @@
 
 namespace dff {
 
-/* The kernels that suit a device: one work-item a pixel, or one a tile or row with 16 lanes of integers. */
-enum class KernelStyle { Pixels, Tiles };
-
 /* An OpenCL device with its context, shared by all engines that use it. */
 class Device {
 public:
@@ -26,7 +24,8 @@ public:
      * that come later. Throws EngineError (NoDevice) with the list of devices if there is none. */
     static std::shared_ptr<Device> open(const std::string &wish);
 
-    /* A device of one's own; CPUs get KernelStyle::Tiles and work in place unless told otherwise. */
+    /* A device of one's own. Without a style it uses the one it computes rightly with; CPUs work in place
+     * unless told otherwise. */
     explicit Device(cl::Device device, std::optional<KernelStyle> style = std::nullopt,
                     std::optional<bool> works_in_place = std::nullopt);
 
@@ -44,7 +43,9 @@ public:
     /* The device works in the host's memory, so that stacks need not be copied to it. */
     bool works_in_place() const { return works_in_place_; }
 
-    KernelStyle kernel_style() const { return kernel_style_; }
+    /* At the first call without a style of one's own, see choose_kernel_style(): may take long, and throw
+     * EngineError. Every engine asks before it builds kernels. */
+    KernelStyle kernel_style() const;
 
     size_t global_memory() const { return global_memory_; }
     size_t largest_allocation() const { return largest_allocation_; }
@@ -54,9 +55,11 @@ private:
     cl::Context context_;
     std::unique_ptr<ProgramCache> programs_;
     bool works_in_place_;
-    KernelStyle kernel_style_;
     size_t global_memory_;
     size_t largest_allocation_;
+
+    mutable std::mutex style_mutex_; /* held while the style is found; guards it */
+    mutable std::optional<KernelStyle> kernel_style_;
 
     mutable std::mutex mutex_; /* a leaf; guards the pools */
     mutable std::map<size_t, std::weak_ptr<UploadPool>> uploads_;

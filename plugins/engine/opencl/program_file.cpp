@@ -14,6 +14,15 @@ namespace dff {
 
 namespace {
 
+/* Drivers do not forgive half a binary. */
+std::string checksum(const std::vector<unsigned char> &binary)
+{
+    const std::string_view bytes(reinterpret_cast<const char *>(binary.data()), binary.size());
+    return std::to_string(std::hash<std::string_view>()(bytes));
+}
+
+} // namespace
+
 std::filesystem::path cache_folder()
 {
     const char *cache = std::getenv("XDG_CACHE_HOME");
@@ -23,15 +32,6 @@ std::filesystem::path cache_folder()
     return home && *home ? std::filesystem::path(home) / ".cache" / "gst-plugins-dff"
                          : std::filesystem::path();
 }
-
-/* Drivers do not forgive half a binary. */
-std::string checksum(const std::vector<unsigned char> &binary)
-{
-    const std::string_view bytes(reinterpret_cast<const char *>(binary.data()), binary.size());
-    return std::to_string(std::hash<std::string_view>()(bytes));
-}
-
-} // namespace
 
 ProgramFile::ProgramFile(std::string key) : key_(std::move(key)), path_(cache_folder())
 {

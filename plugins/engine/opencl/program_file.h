@@ -10,8 +10,11 @@
 
 namespace dff {
 
-/* What a driver built from a program, in the user's cache folder: $XDG_CACHE_HOME or ~/.cache, then
- * gst-plugins-dff. A folder that cannot be written or a file that is broken costs time only. */
+/* gst-plugins-dff in $XDG_CACHE_HOME or ~/.cache; empty where there is no home. */
+std::filesystem::path cache_folder();
+
+/* What a driver built from a program, in the cache folder. A folder that cannot be written or a file that is
+ * broken costs time only. */
 class ProgramFile {
 public:
     /* `key` is all that the result depends on: device, driver, options, source. */

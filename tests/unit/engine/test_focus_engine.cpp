@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/focus_engine.h"
 #include "engine/gaussian_blur.h"
+#include "engine/self_test.h"
 #include "twin_bilateral_grid.h"
 #include "twin_focus.h"
 
@@ -69,6 +70,31 @@ TEST(FocusEngine, agrees_with_the_twins)
     }
     EXPECT_LE(far_off, maps.depth.size() / 100) << "within 1/255 of the range on 99 % of the pixels";
     EXPECT_LE(other_sparse, maps.depth.size() / 1000);
+}
+
+/* Kernels for CPUs and for GPUs are two ways to one depth; sizes that no level of the focus measure divides.
+ */
+TEST(FocusEngine, both_styles_make_the_same_depth_of_a_stack)
+{
+    for (const StackShape &shape : {self_test::shape, StackShape{PixelFormat::I420, 398, 322, 6},
+                                    StackShape{PixelFormat::I420, 194, 482, 9}}) {
+        TestStack stack(shape);
+        stack.memory = self_test::stack(shape);
+        Maps pixels(shape), tiles(shape);
+        FocusEngine(device_with(KernelStyle::Pixels), shape, with(Method::Paper))
+            .compute(stack.view(), pixels.outputs);
+        FocusEngine(device_with(KernelStyle::Tiles), shape, with(Method::Paper))
+            .compute(stack.view(), tiles.outputs);
+        size_t by_a_hundredth = 0;
+        int most = 0;
+        for (size_t i = 0; i < pixels.depth.size(); i++) {
+            const int difference = std::abs(pixels.depth[i] - tiles.depth[i]);
+            by_a_hundredth += difference > 655;
+            most = std::max(most, difference);
+        }
+        EXPECT_LE(most, 1310) << "2 % of the range, " << shape.width;
+        EXPECT_LE(by_a_hundredth, pixels.depth.size() / 1000) << shape.width;
+    }
 }
 
 TEST_P(BothMethods, a_stack_without_texture_has_no_depth)
