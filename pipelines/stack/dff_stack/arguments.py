@@ -88,6 +88,7 @@ def parser():
     add_results(made.add_argument_group('what is made'))
     add_order(made.add_argument_group('the sweep'))
     add_work(made.add_argument_group('how it is computed'))
+    add_batch(made.add_argument_group('many stacks'))
     return made
 
 
@@ -122,8 +123,41 @@ def add_work(group):
     group.add_argument('--quiet', action='store_true', help='say nothing but what is wrong')
 
 
+def add_batch(group):
+    group.add_argument('--batch', metavar='FOLDER', help='a folder of folders, each a stack; -o names a folder for the results')
+    group.add_argument('--workers', metavar='N', type=workers, help='compute N stacks at once, on a Dask cluster started here')
+    group.add_argument('--scheduler', metavar='URL', help='hand the stacks to a Dask cluster, as tcp://HOST:8786')
+
+
+def workers(text):
+    if not text.isdecimal() or not 1 <= int(text) <= 256:
+        raise argparse.ArgumentTypeError(f'{text} is no number of workers from 1 to 256')
+    return int(text)
+
+
+ONE_STACK_ONLY = ('depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'video', 'save_alignment', 'pixel_size')
+
+
+def check_batch(made, options):
+    if options.pictures:
+        made.error('--batch takes no other pictures than those of its folder')
+    if not options.output:
+        made.error('name a folder for the results: --batch FOLDER -o RESULTS')
+    for name in ONE_STACK_ONLY:
+        if getattr(options, name):
+            made.error(f'--{name.replace("_", "-")} is for one stack; --batch writes the picture and the depth of each')
+
+
 def check(made, options):
     """Ends with status 2 where options contradict each other."""
+    if options.batch:
+        return check_batch(made, options)
+    if options.workers or options.scheduler:
+        made.error('--workers and --scheduler are for --batch')
+    return check_one(made, options)
+
+
+def check_one(made, options):
     if not options.pictures:
         made.error('name the pictures, or a folder of them')
     outputs = ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'video', 'save_alignment')

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from dff_stack import Unusable, alignment, arguments, cloud, depths, engine, listed, memory, order, results, slabs, solve, sweep, video
+from dff_stack import Unusable, alignment, arguments, batch, cloud, depths, engine, listed, memory, order, results, slabs, solve, sweep, video
 from dff_stack.progress import Progress, spoken
 
 
@@ -83,9 +83,7 @@ def write(options, files, found, solved, warps, pixel_um):
         video.write(files.begin(options.video), results.as_file_holds(pixels, '.jpg'), solved.depth, found.count, lambda text: None)
 
 
-def process(options):
-    progress = Progress(quiet=options.quiet)
-    say = (lambda text: None) if options.quiet else progress.say
+def process(options, progress, say):
     engine.start()
     pictures, pixel_um = sweep.gather(options.pictures, options.order, options.far_first, say)
     if not options.quiet:
@@ -123,8 +121,12 @@ def main(arguments_=None):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, ended)
     options = arguments.parse(arguments_)
+    progress = Progress(quiet=options.quiet)
+    say = (lambda text: None) if options.quiet else progress.say
     try:
-        process(options)
+        if options.batch:
+            return 1 if batch.run(options, progress, say) else 0
+        process(options, progress, say)
     except (Unusable, OSError, MemoryError, UnicodeError) as error:
         print(f'\ndff-stack: {error or "there is not enough memory: see --memory"}', file=sys.stderr)
         return 1

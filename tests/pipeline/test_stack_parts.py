@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""test_stack_parts.py SOURCE_ROOT: how dff-stack cuts what is too large and joins the parts, and how warps are chained."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+from slope import MANY, many_planes
+
+sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
+from dff_stack import Unusable, alignment, engine, joining, memory, slabs, solve  # noqa: E402
+from dff_stack.encoding import Encoding  # noqa: E402
+from dff_stack.progress import Progress  # noqa: E402
+
+RGB = Encoding('RGB', 3, 'u1', False)
+GIB = 2 ** 30
+
+
+class Plans(unittest.TestCase):
+    def test_slabs_share_planes_and_leave_none_out(self):
+        for count in (2, 9, 16, 17, 64, 65, 300, 1000):
+            for size in (8, 16, 64):
+                spans = slabs.slabs_of(count, size)
+                self.assertEqual((spans[0][0], spans[-1][1]), (0, count))
+                self.assertTrue(all(2 <= last - first <= size for first, last in spans))
+                self.assertTrue(all(before[1] - after[0] >= slabs.OVERLAP for before, after in zip(spans, spans[1:])), (count, size))
+
+    def test_what_fits_is_computed_at_once(self):
+        plan = slabs.plan(30, 1920, 1080, RGB, 4 * GIB, 10)
+        self.assertEqual((plan.slabs, len(plan.tiles)), ([(0, 30)], 1))
+
+    def test_300_pictures_of_24_megapixels_in_6_gib(self):
+        plan = slabs.plan(300, 6000, 4000, RGB, 6 * GIB, 100)
+        self.assertEqual(len(plan.tiles), 1)
+        self.assertGreaterEqual(min(last - first for first, last in plan.slabs), slabs.FEWEST_PLANES)
+
+    def test_large_pictures_are_tiles_that_overlap(self):
+        for width, height in ((8256, 5504), (9504, 6336), (20000, 20000)):
+            plan = slabs.plan(20, width, height, RGB, 64 * GIB, 300)
+            self.assertTrue(all(max(tile.size) <= slabs.MOST_SIDE for tile in plan.tiles))
+            covered = np.zeros((height // 8, width // 8), int)
+            for tile in plan.tiles:
+                covered[tile.y0 // 8:-(-tile.y1 // 8), tile.x0 // 8:-(-tile.x1 // 8)] += 1
+            self.assertTrue(covered.all())
+            self.assertGreaterEqual(plan.margin, 300 + slabs.MARGIN)
+
+    def test_too_little_memory_is_told(self):
+        with self.assertRaisesRegex(Unusable, '0.4 GiB .* 6000x4000'):
+            slabs.plan(300, 6000, 4000, RGB, 0.4 * GIB, 100)
+
+    def test_memory_is_what_the_group_may_have(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / 'meminfo').write_text('MemTotal: 9 kB\nMemAvailable:    4000000 kB\n')
+            self.assertEqual(memory.free_bytes(folder / 'meminfo', folder), 4000000 * 1024)
+            (folder / 'memory.max').write_text('max\n')
+            self.assertEqual(memory.free_bytes(folder / 'meminfo', folder), 4000000 * 1024)
+            (folder / 'memory.max').write_text('2000000000\n')
+            (folder / 'memory.current').write_text('500000000\n')
+            self.assertEqual(memory.free_bytes(folder / 'meminfo', folder), 1500000000)
+        self.assertEqual([memory.bytes_of(text) for text in ('6G', '1.5GiB', '800M', '2')], [6 * GIB, 1.5 * GIB, 800 * 2 ** 20, 2 * GIB])
+
+
+class Joining(unittest.TestCase):
+    def test_tiles_of_one_picture_give_it_again(self):
+        width, height = 700, 500
+        whole = engine.Solved(np.random.default_rng(1).integers(0, 256, (height, width, 3)).astype(np.uint8),
+                              np.random.default_rng(2).random((height, width), np.float32),
+                              np.full((height, width), 7, np.uint8))
+        margin = 120
+        pasted = joining.empty(RGB, (width, height))
+        for tile in slabs.tiles_of(width, height, 2, 2, margin):
+            there = slice(tile.y0, tile.y1), slice(tile.x0, tile.x1)
+            part = engine.Solved(*(values[there].copy() for values in (whole.picture, whole.depth, whole.confidence)))
+            for side, inner in ((np.s_[:, :20], tile.x0 > 0), (np.s_[:20], tile.y0 > 0)):
+                if inner:  # what a tile knows of its borders is not to be used
+                    part.picture[side], part.depth[side] = 0, np.nan
+            joining.paste(pasted, part, tile, margin)
+        np.testing.assert_array_equal(pasted.picture, whole.picture)
+        np.testing.assert_allclose(pasted.depth, whole.depth, atol=1e-6)
+        np.testing.assert_array_equal(pasted.confidence, whole.confidence)
+
+    def test_two_surfaces_are_not_mixed(self):
+        mixed = joining.mixed_depth(np.float32([2, 2, 2, np.nan, 2]), np.float32([2.5, 9, 9, 4, np.nan]), np.float32([0.5, 0.2, 0.7, 0.1, 0.9]))
+        np.testing.assert_allclose(mixed, [2.25, 2, 9, 4, 2])
+
+    def test_slabs_tell_of_their_own_planes(self):
+        spans = [(0, 12), (8, 20), (16, 28)]
+        truth = np.linspace(0, 27, 400, dtype=np.float32)[None]
+        depths = np.stack([np.clip(truth, first, last - 1) for first, last in spans])
+        centres = [(first + last - 1) / 2 for first, last in spans]
+        upper = np.interp(truth, centres, range(3)).astype(np.float32)
+        confidences = np.stack([np.full(truth.shape, number, np.uint8) for number in range(3)])
+        joined, confidence = joining.joined_rows(depths, confidences, spans, upper)
+        np.testing.assert_allclose(joined, truth, atol=0.25)
+        self.assertEqual((confidence[0, 0], confidence[0, -1]), (0, 2))
+        joined, _ = joining.joined_rows(depths, confidences, spans, upper * np.nan)
+        self.assertTrue(np.isnan(joined).all())
+
+
+class Warps(unittest.TestCase):
+    def plane_warps(self, count):
+        random = np.random.default_rng(5)
+        return [np.array([[1 + 0.0002 * k, 1e-4 * x, 3 * x], [-1e-4 * x, 1 + 0.0002 * k, 2 * y], [0, 0, 1]])
+                for k, (x, y) in enumerate(random.standard_normal((count, 2)))]
+
+    def test_windows_are_chained(self):
+        for count in (2, 40, 64, 65, 200):
+            truth = self.plane_warps(count)
+            spans = alignment.windows(count)
+            self.assertEqual((spans[0][0], spans[-1][1]), (0, count))
+            found = []
+            for first, last in spans:
+                middle = np.linalg.inv(truth[first + (last - first) // 2])
+                found.append([{'matrix': truth[k] @ middle, 'trusted': True, 'blank': False} for k in range(first, last)])
+            expected = [warp @ np.linalg.inv(truth[count // 2]) for warp in truth]
+            np.testing.assert_allclose(alignment.chained(found, spans), expected, atol=1e-6)
+
+    def test_estimates_are_of_full_size(self):
+        warp = np.array([[1, 0, 2.0], [0, 1, -1], [1e-5, 0, 1]])
+        found = alignment.estimate([None] * 2, 4, lambda lumas: [{'matrix': warp, 'trusted': True, 'blank': False},
+                                                                 {'matrix': np.eye(3), 'trusted': False, 'blank': True}])
+        point = found.warps[0] @ [400, 0, 1]
+        small = warp @ [100, 0, 1]
+        np.testing.assert_allclose(point[:2] / point[2], 4 * small[:2] / small[2])
+        self.assertEqual((found.trusted, found.blank), ([True, False], [False, True]))
+
+    def test_a_stranger_in_the_middle_is_found(self):
+        def find_warps(lumas):
+            middle = lumas[len(lumas) // 2]
+            return [{'matrix': np.eye(3), 'trusted': luma == middle, 'blank': False} for luma in lumas]
+        found = alignment.estimate_most([1, 1, 1, 2, 1, 1, 1], 1, find_warps)
+        self.assertEqual(alignment.misfits(found), {3})
+
+    def test_warps_of_parts_and_how_far_they_go(self):
+        warp = np.array([[1.02, 0, 5], [0, 1.02, 0], [0, 0, 1]])
+        part = alignment.of_part(warp, (100, 50))
+        there = part @ [7, 8, 1]
+        whole = warp @ [107, 58, 1]
+        np.testing.assert_allclose(there[:2], whole[:2] - [100, 50])
+        self.assertAlmostEqual(alignment.farthest([np.eye(3), warp], 1000, 500), 15)
+
+    def test_files_are_read_again_at_another_size(self):
+        warps = self.plane_warps(3)
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name, 'a.json')
+            path.write_text(alignment.text_of(warps, 1000, 500, ['a', 'b', 'c']))
+            np.testing.assert_allclose(alignment.load(path, 1000, 500, 3).warps, warps, atol=1e-9)
+            self.assertAlmostEqual(alignment.load(path, 500, 250, 3).warps[1][0, 2], warps[1][0, 2] / 2)
+            for text, words in (('{}', 'no alignment'), ('[]', 'no alignment'), (path.read_text().replace('1000', '"x"', 1), 'no alignment')):
+                path.write_text(text)
+                with self.assertRaisesRegex(Unusable, words):
+                    alignment.load(path, 1000, 500, 3)
+
+
+class Arrays:
+    """Planes that are there already."""
+
+    def __init__(self, planes):
+        self.planes, self.encoding = planes, RGB
+        self.count, self.size = len(planes), planes[0].shape[1::-1]
+
+    def read(self, number, keep=False):
+        return self.planes[number]
+
+
+class Seams(unittest.TestCase):
+    """What is computed in parts is what is computed at once."""
+
+    @classmethod
+    def setUpClass(cls):
+        engine.start()
+        cls.planes = [np.round(plane).astype(np.uint8) for plane in many_planes()]
+        cls.whole = cls.solve(slabs.slabs_of(MANY, MANY), 1)
+
+    @classmethod
+    def solve(cls, spans, columns):
+        source = Arrays(cls.planes)
+
+        def plan_of(source, warps, work):
+            chosen = spans if source.count == MANY else [(0, source.count)]
+            margin = 48 if columns > 1 else 0
+            return slabs.Plan(chosen, slabs.tiles_of(*source.size, columns, 1, margin), margin)
+
+        kept, solve.plan_of = solve.plan_of, plan_of
+        try:
+            work = solve.Work(GIB, False, Progress(quiet=True), lambda text: None)
+            return solve.solve(source, None, work)
+        finally:
+            solve.plan_of = kept
+
+    def assert_no_seam(self, parts):
+        inner = np.s_[16:-16, 24:-24]
+        off = np.abs(parts.depth - self.whole.depth)[inner]
+        self.assertLess(np.median(off), 0.1)
+        self.assertLess(np.quantile(off, 0.95), 1)
+        of_columns = np.median(parts.depth[inner], 0) - np.median(self.whole.depth[inner], 0)
+        self.assertLess(np.abs(np.diff(of_columns)).max(), 0.25, 'a step of depth from column to column')
+        picture = np.abs(parts.picture.astype(float) - self.whole.picture)[inner]
+        self.assertLess(picture.mean(), 1)
+
+    def test_of_slabs(self):
+        self.assert_no_seam(self.solve(slabs.slabs_of(MANY, 14), 1))
+
+    def test_of_tiles(self):
+        self.assert_no_seam(self.solve([(0, MANY)], 2))
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1])
