@@ -12,6 +12,10 @@
  * The camera's intrinsics come from a `calibration` file or from the GstDepthMeta (see calibration of
  * dffdepth), the distances from a depth in dioptres or millimetres. Put a queue on every branch.
  *
+ * A microscope sees the same size at every distance: projection=orthographic with pixel-size, and a depth in
+ * micrometres, give a cloud in micrometres, with x and y from the picture's centre and z the stage position,
+ * or its negative where the stage's positions fall from the nearest plane to the farthest.
+ *
  * ## Example launch line
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=5 far=0.5 ! video/x-raw,width=320,height=240 ! \
@@ -40,9 +44,17 @@ static GstStaticPadTemplate src_template =
 
 namespace {
 
-enum Property : guint { PropertyCalibration = 1, PropertyStride, PropertyMaxDistance };
+enum Property : guint {
+    PropertyCalibration = 1,
+    PropertyStride,
+    PropertyMaxDistance,
+    PropertyProjection,
+    PropertyPixelSize
+};
 
 struct Settings {
+    GstDepthPlyEncProjection projection = GST_DEPTH_PLY_ENC_PROJECTION_PERSPECTIVE;
+    double pixel_size_um = 0.0;
     std::string calibration;
     guint stride = 1;
     double max_distance = G_MAXDOUBLE;
@@ -52,6 +64,7 @@ struct Settings {
 struct CameraPoints {
     dff::CameraCalibration camera;
     guint stride;
+    double pixel_size_um; /* 0: the camera sees in perspective */
     dff::PointCloud cloud;
 };
 
@@ -64,6 +77,13 @@ struct State {
     std::optional<dff::DepthScale> scale;
     std::vector<float> distances; /* of `scale` */
 };
+
+constexpr char unknown_distances[] =
+    "Points need distances, but the depth is in plane numbers or stage positions: give near and far to the "
+    "source or to lenssweeptag, and unit=dioptre to dffdepth";
+constexpr char unknown_heights[] =
+    "Points need heights, but the depth is in plane numbers: give positions or step-um to lenssweeptag, and "
+    "unit=micrometre to dffdepth";
 
 dff::CameraCalibration camera_of(const GstDepthInfo &depth, unsigned width, unsigned height)
 {
@@ -92,6 +112,18 @@ GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(depthplyenc, "depthplyenc", GST_RANK_NONE,
                                       GST_DEBUG_CATEGORY_INIT(gst_depth_ply_enc_debug, "depthplyenc", 0,
                                                               "point clouds"))
 
+GType gst_depth_ply_enc_projection_get_type()
+{
+    static const GEnumValue values[] = {
+        {GST_DEPTH_PLY_ENC_PROJECTION_PERSPECTIVE, "By the camera's intrinsics, in metres", "perspective"},
+        {GST_DEPTH_PLY_ENC_PROJECTION_ORTHOGRAPHIC, "Telecentric, as a microscope: in micrometres",
+         "orthographic"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstDepthPlyEncProjection", values);
+    return type;
+}
+
 static Settings settings_of(GstDepthPlyEnc *self)
 {
     GST_OBJECT_LOCK(self);
@@ -100,22 +132,48 @@ static Settings settings_of(GstDepthPlyEnc *self)
     return settings;
 }
 
-static void prepare_distances(State &state, const dff::DepthScale &scale)
+/* A cloud's z points away from the camera, whichever way the stage counts. */
+static void turn_away(std::vector<float> &heights)
 {
-    if (scale.unit != dff::DepthUnit::Dioptre && scale.unit != dff::DepthUnit::Millimetre)
-        throw std::runtime_error(
-            "Points need distances, but the depth is in plane numbers or stage positions: give "
-            "near and far to the source or to lenssweeptag, and unit=dioptre to dffdepth");
+    for (float &height : heights)
+        height = -height;
+}
+
+static void prepare_distances(State &state, const dff::DepthScale &scale, bool orthographic)
+{
+    const bool in_distances =
+        scale.unit == dff::DepthUnit::Dioptre || scale.unit == dff::DepthUnit::Millimetre;
+    const bool in_heights = scale.unit == dff::DepthUnit::Micrometre;
+    if (!in_distances && !(in_heights && orthographic))
+        throw std::runtime_error(orthographic ? unknown_heights : unknown_distances);
     if (state.scale == scale)
         return;
     state.distances = dff::distance_table(scale);
+    if (in_heights && scale.scale < 0.0)
+        turn_away(state.distances);
     state.scale = scale;
 }
 
-static void prepare_points(State &state, const dff::CameraCalibration &camera, guint stride)
+static dff::CameraCalibration seen_by(const State &state, const GstDepthInfo &facts,
+                                      const dff::PictureView &view, bool orthographic)
 {
-    if (!state.points || state.points->camera != camera || state.points->stride != stride)
-        state.points.emplace(CameraPoints{camera, stride, dff::PointCloud(camera, stride)});
+    if (orthographic)
+        return {.width = view.width, .height = view.height};
+    return state.calibration ? state.calibration->scaled_to(view.width, view.height)
+                             : camera_of(facts, view.width, view.height);
+}
+
+static void prepare_points(State &state, const dff::CameraCalibration &camera, guint stride,
+                           double pixel_size_um)
+{
+    if (state.points && state.points->camera == camera && state.points->stride == stride &&
+        state.points->pixel_size_um == pixel_size_um)
+        return;
+    state.points.emplace(
+        CameraPoints{camera, stride, pixel_size_um,
+                     pixel_size_um > 0.0
+                         ? dff::PointCloud::orthographic(camera.width, camera.height, pixel_size_um, stride)
+                         : dff::PointCloud(camera, stride)});
 }
 
 static std::vector<guint8> encode(GstDepthFileEnc *encoder, const dff::FrameSet &frames)
@@ -128,11 +186,14 @@ static std::vector<guint8> encode(GstDepthFileEnc *encoder, const dff::FrameSet 
     const dff::PictureView view = depth.view();
 
     const GstDepthInfo facts = dff::depth_of(frames.depth, frames.depth_caps);
-    prepare_distances(state, dff::scale_of(facts));
-    const dff::CameraCalibration camera = state.calibration
-                                              ? state.calibration->scaled_to(view.width, view.height)
-                                              : camera_of(facts, view.width, view.height);
-    prepare_points(state, camera, settings.stride);
+    const bool orthographic = settings.projection == GST_DEPTH_PLY_ENC_PROJECTION_ORTHOGRAPHIC;
+    if (orthographic && !(settings.pixel_size_um > 0.0))
+        throw std::runtime_error(
+            "projection=orthographic needs pixel-size: how many micrometres of the scene "
+            "a pixel shows");
+    prepare_distances(state, dff::scale_of(facts), orthographic);
+    prepare_points(state, seen_by(state, facts, view, orthographic), settings.stride,
+                   orthographic ? settings.pixel_size_um : 0.0);
     return state.points->cloud.write(colour.view(), view, state.distances, settings.max_distance);
 }
 
@@ -161,6 +222,10 @@ static void set_property(GObject *object, guint id, const GValue *value, GParamS
         settings.stride = g_value_get_uint(value);
     else if (id == PropertyMaxDistance)
         settings.max_distance = g_value_get_double(value);
+    else if (id == PropertyProjection)
+        settings.projection = static_cast<GstDepthPlyEncProjection>(g_value_get_enum(value));
+    else if (id == PropertyPixelSize)
+        settings.pixel_size_um = g_value_get_double(value);
     else
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
     GST_OBJECT_UNLOCK(object);
@@ -175,6 +240,10 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *p
         g_value_set_uint(value, settings.stride);
     else if (id == PropertyMaxDistance)
         g_value_set_double(value, settings.max_distance);
+    else if (id == PropertyProjection)
+        g_value_set_enum(value, settings.projection);
+    else if (id == PropertyPixelSize)
+        g_value_set_double(value, settings.pixel_size_um);
     else
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
 }
@@ -214,6 +283,17 @@ static void install_properties(GObjectClass *object_class)
         g_param_spec_double("max-distance", "Max distance",
                             "Metres along the camera's axis beyond which there are no points", 0.0,
                             G_MAXDOUBLE, defaults.max_distance, playing));
+    g_object_class_install_property(object_class, PropertyProjection,
+                                    g_param_spec_enum("projection", "Projection", "How the camera sees",
+                                                      GST_TYPE_DEPTH_PLY_ENC_PROJECTION, defaults.projection,
+                                                      playing));
+    g_object_class_install_property(
+        object_class, PropertyPixelSize,
+        g_param_spec_double(
+            "pixel-size", "Pixel size",
+            "projection=orthographic: micrometres from pixel to pixel in the scene, which are "
+            "those of the sensor over the magnification",
+            0.0, 1e6, defaults.pixel_size_um, playing));
 }
 
 static void gst_depth_ply_enc_class_init(GstDepthPlyEncClass *klass)
@@ -232,4 +312,5 @@ static void gst_depth_ply_enc_class_init(GstDepthPlyEncClass *klass)
     gst_element_class_set_static_metadata(element_class, "PLY encoder", "Codec/Encoder/Image",
                                           "Writes colour and depth as point clouds",
                                           "the gst-plugins-dff authors");
+    gst_type_mark_as_plugin_api(GST_TYPE_DEPTH_PLY_ENC_PROJECTION, static_cast<GstPluginAPIFlags>(0));
 }

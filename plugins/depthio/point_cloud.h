@@ -11,23 +11,39 @@
 namespace dff {
 
 /* The points that a camera sees, as a binary little-endian PLY file: x right, y down, z away from the camera,
- * in metres, with red, green, blue. */
+ * with red, green, blue; in metres, or in micrometres for a camera whose rays are parallel. */
 class PointCloud {
 public:
     /* Looks at every `stride`th pixel of every `stride`th row of the camera's pictures. */
     PointCloud(const CameraCalibration &camera, unsigned stride);
 
+    /* Of a telecentric camera, as a microscope is: pixels are `pixel_size_um` micrometres apart in the scene
+     * at every distance; x and y are 0 in the picture's centre. */
+    static PointCloud orthographic(unsigned width, unsigned height, double pixel_size_um, unsigned stride);
+
     /* The file of a depth picture of the camera's size; `distances` holds the metres along the axis of each
-     * depth pixel there can be, see distance_table(). Pixels without a finite distance above 0 and up to
-     * `max_distance` give no point. */
+     * depth pixel there can be, see distance_table(). Pixels without a finite distance up to `max_distance`
+     * give no point, nor do those at or behind a camera that is not orthographic. */
     std::vector<uint8_t> write(const PictureView &colour, const PictureView &depth,
                                std::span<const float> distances, double max_distance) const;
 
 private:
     struct Ray {
-        float x, y; /* at 1 m along the axis */
+        float x, y; /* at 1 m along the axis; micrometres where rays are parallel */
+    };
+    struct Point {
+        float x, y, z;
     };
 
+    PointCloud(unsigned width, unsigned stride)
+        : orthographic_(true), stride_(stride), columns_((width + stride - 1) / stride)
+    {
+    }
+
+    bool shows(float distance, double max_distance) const;
+    Point point(const Ray &ray, float distance) const;
+
+    bool orthographic_ = false;
     unsigned stride_;
     unsigned columns_;
     std::vector<Ray> rays_;

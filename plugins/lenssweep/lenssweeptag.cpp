@@ -32,6 +32,9 @@
  * Where the planes lie is said by near and far, or by powers, or by a lens that knows its powers and is moved
  * here. Otherwise it is not known, and depth can only be in plane numbers: no distance is invented.
  *
+ * A microscope has no vergences but stage positions: positions, or step-um for even steps, give them in
+ * micrometres, and `dffdepth unit=micrometre` heights.
+ *
  * Pixels are neither copied nor touched.
  *
  * ## Example launch line
@@ -278,6 +281,7 @@ static void add_focus_meta(const SweepTagger &tagger, GstBuffer *buffer, const P
     focus.plane = label.plane;
     focus.planes = tagger.planes();
     focus.power = tagger.power(label.plane);
+    focus.position_um = tagger.position_um(label.plane);
     focus.code = tagger.code(label.plane);
     focus.frame_id = frame_id;
     if (GstFocusMeta *old = gst_buffer_get_focus_meta(buffer))

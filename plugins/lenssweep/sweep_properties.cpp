@@ -12,7 +12,13 @@ namespace {
 constexpr auto flags =
     static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
 
-std::vector<gdouble> numbers(const GValue *array)
+/* Dioptres: what lies beyond has no lens. */
+constexpr gdouble least_power = -100.0;
+constexpr gdouble greatest_power = 1000.0;
+
+} // namespace
+
+std::vector<gdouble> numbers_of(const GValue *array)
 {
     std::vector<gdouble> result;
     for (guint i = 0; i < gst_value_array_get_size(array); i++)
@@ -29,12 +35,6 @@ void put_numbers(GValue *array, const std::vector<gdouble> &numbers)
         gst_value_array_append_value(array, &item);
     }
 }
-
-/* Dioptres: what lies beyond has no lens. */
-constexpr gdouble least_power = -100.0;
-constexpr gdouble greatest_power = 1000.0;
-
-} // namespace
 
 dff::SweepPlan SweepProperties::plan() const
 {
@@ -91,7 +91,7 @@ bool set_sweep_property(SweepProperties &properties, guint id, const GValue *val
         properties.far = g_value_get_double(value);
         return true;
     case PROP_POWERS:
-        properties.powers = numbers(value);
+        properties.powers = numbers_of(value);
         return true;
     default:
         return false;

@@ -27,6 +27,10 @@ enum { PROP_PLANES = 1, PROP_NEAR, PROP_FAR, PROP_POWERS, FIRST_OWN_PROPERTY };
 /* Who gives `near` and `far` as defaults that say nothing need not know where the planes lie. */
 void install_sweep_properties(GObjectClass *klass, const SweepProperties &defaults = {});
 
+/* Of values that are arrays of doubles. */
+std::vector<gdouble> numbers_of(const GValue *array);
+void put_numbers(GValue *array, const std::vector<gdouble> &numbers);
+
 /* False if the id is not one of theirs. */
 bool set_sweep_property(SweepProperties &properties, guint id, const GValue *value);
 bool get_sweep_property(const SweepProperties &properties, guint id, GValue *value);

@@ -21,7 +21,7 @@ dff::SweepPlan plan_of(const SweepProperties &sweep)
 } // namespace
 
 SweepTagger::SweepTagger(const TagSettings &settings, const FindProperty &find_property)
-    : settings_(settings), plan_(plan_of(settings.sweep))
+    : settings_(settings), plan_(plan_of(settings.stage.counted(settings.sweep)))
 {
     auto lens =
         dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile, nullptr, find_property});

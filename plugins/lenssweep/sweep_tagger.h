@@ -44,6 +44,9 @@ public:
     /* Vergence in dioptres; NAN if neither the user says it nor a lens that is moved here. */
     double power(unsigned plane) const;
 
+    /* Of a microscope's stage, in micrometres; NAN if the user does not say it. */
+    double position_um(unsigned plane) const { return settings_.stage.of(plane); }
+
     /* What the lens is told for a plane, or -1. */
     int code(unsigned plane) const;
 

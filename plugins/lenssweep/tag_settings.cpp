@@ -15,6 +15,8 @@ enum {
     PROP_SETTLE_FRAMES,
     PROP_SYNC_LINE,
     PROP_TIMESTAMP_DELAY,
+    PROP_POSITIONS,
+    PROP_STEP_UM,
 };
 
 constexpr auto flags =
@@ -24,6 +26,28 @@ void install_string(GObjectClass *klass, guint id, const char *name, const char 
                     const char *value)
 {
     g_object_class_install_property(klass, id, g_param_spec_string(name, nick, blurb, value, flags));
+}
+
+/* Micrometres: a stage of ten metres is none. */
+constexpr gdouble farthest_position = 1e7;
+
+void install_stage_properties(GObjectClass *klass, const StagePositions &defaults)
+{
+    g_object_class_install_property(
+        klass, PROP_POSITIONS,
+        gst_param_spec_array("positions", "Positions",
+                             "Where a microscope's stage stands in each plane, in micrometres, all rising or "
+                             "all falling, that of the nearest plane first; replaces planes unless empty",
+                             g_param_spec_double("position", "Position", "Stage position in micrometres",
+                                                 -farthest_position, farthest_position, 0.0, flags),
+                             flags));
+    g_object_class_install_property(
+        klass, PROP_STEP_UM,
+        dff::checked_at_start(g_param_spec_double(
+            "step-um", "Step",
+            "How far a microscope's stage moves from plane to plane, in micrometres; plane 0 "
+            "is at 0; 0: positions are not known, or are those of positions",
+            -farthest_position, farthest_position, defaults.step_um, flags)));
 }
 
 std::string text_of(const GValue *value)
@@ -83,6 +107,7 @@ void install_tag_properties(GObjectClass *klass)
             "mode=sync: time in ns from the begin of a frame's exposure to its timestamp; drivers "
             "that stamp a frame when it was read out need the exposure and the readout here",
             0, 10 * GST_SECOND, defaults.timestamp_delay_ns, flags));
+    install_stage_properties(klass, defaults.stage);
 }
 
 bool set_tag_property(TagSettings &settings, guint id, const GValue *value)
@@ -105,6 +130,12 @@ bool set_tag_property(TagSettings &settings, guint id, const GValue *value)
         return true;
     case PROP_TIMESTAMP_DELAY:
         settings.timestamp_delay_ns = g_value_get_uint64(value);
+        return true;
+    case PROP_POSITIONS:
+        settings.stage.positions_um = numbers_of(value);
+        return true;
+    case PROP_STEP_UM:
+        settings.stage.step_um = g_value_get_double(value);
         return true;
     default:
         return set_sweep_property(settings.sweep, id, value);
@@ -131,6 +162,12 @@ bool get_tag_property(const TagSettings &settings, guint id, GValue *value)
         return true;
     case PROP_TIMESTAMP_DELAY:
         g_value_set_uint64(value, settings.timestamp_delay_ns);
+        return true;
+    case PROP_POSITIONS:
+        put_numbers(value, settings.stage.positions_um);
+        return true;
+    case PROP_STEP_UM:
+        g_value_set_double(value, settings.stage.step_um);
         return true;
     default:
         return get_sweep_property(settings.sweep, id, value);

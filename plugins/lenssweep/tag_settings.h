@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "stage_positions.h"
 #include "sweep_properties.h"
 
 #include <glib-object.h>
@@ -18,6 +19,7 @@ GType gst_lens_sweep_tag_mode_get_type();
 /* The properties of lenssweeptag, but for its statistics. */
 struct TagSettings {
     SweepProperties sweep{.near = 0.0, .far = 0.0, .powers = {}}; /* nobody invents distances */
+    StagePositions stage;
     GstLensSweepTagMode mode = GST_LENS_SWEEP_TAG_MODE_CYCLE;
     std::string lens = "none";
     std::string lens_profile;

@@ -148,6 +148,58 @@ TEST(DepthPlyEnc, what_is_missing_is_told)
               std::string::npos);
 }
 
+namespace {
+
+/* Stage positions that rise from -10 um in the first row to 37 um in the last, or fall from there. */
+EncodedFile stage_cloud(const std::string &properties, bool falling)
+{
+    Buffer depth = depth_frame(width, height, depth_at);
+    GstDepthInfo info;
+    gst_depth_info_init(&info);
+    info.unit = GST_DEPTH_UNIT_MICROMETRE;
+    info.scale = (falling ? -47.0 : 47.0) / 65534.0;
+    info.offset = (falling ? 37.0 : -10.0) - info.scale;
+    gst_buffer_add_depth_meta(depth.get(), &info);
+    return encode_file("depthplyenc " + properties, width, height, colour_frame(width, height, colour_at),
+                       std::move(depth), "");
+}
+
+} // namespace
+
+TEST(DepthPlyEnc, a_microscope_sees_the_same_size_at_every_height)
+{
+    const EncodedFile file = stage_cloud("projection=orthographic pixel-size=0.65", false);
+    ASSERT_EQ(file.error, "");
+    const std::string text(file.bytes.begin(), file.bytes.end());
+    EXPECT_NE(text.find("comment micrometres;"), std::string::npos);
+    const std::vector<Point> points = read_ply(file.bytes);
+    ASSERT_EQ(points.size(), (width - 1) * height);
+    for (const Point &point : points) {
+        EXPECT_NEAR(point.x, (point.colour[0] - 31.5) * 0.65, 1e-4);
+        EXPECT_NEAR(point.y, (point.colour[1] - 23.5) * 0.65, 1e-4);
+        EXPECT_NEAR(point.z, -10.0 + point.colour[1], 2e-3);
+    }
+}
+
+TEST(DepthPlyEnc, z_points_away_from_a_microscope_whose_stage_counts_down)
+{
+    const EncodedFile file = stage_cloud("projection=orthographic pixel-size=2 stride=4", true);
+    ASSERT_EQ(file.error, "");
+    const std::vector<Point> points = read_ply(file.bytes);
+    ASSERT_EQ(points.size(), 15u * 12u);
+    for (const Point &point : points)
+        EXPECT_NEAR(point.z, -37.0 + point.colour[1], 2e-3);
+}
+
+TEST(DepthPlyEnc, a_microscope_without_size_or_heights_is_told_what_to_give)
+{
+    EXPECT_NE(stage_cloud("projection=orthographic", false).error.find("needs pixel-size"),
+              std::string::npos);
+    EXPECT_NE(cloud("projection=orthographic pixel-size=1", ",depth-unit=index").error.find("step-um"),
+              std::string::npos);
+    EXPECT_NE(stage_cloud("", false).error.find("stage positions"), std::string::npos);
+}
+
 TEST(DepthPlyEnc, pictures_of_two_sizes_are_refused_by_name)
 {
     g_autoptr(GstElement) pipeline = gst_parse_launch(

@@ -109,6 +109,30 @@ TEST_F(Tag, powers_can_be_given_one_by_one)
     EXPECT_EQ(last.planes, 3U);
 }
 
+TEST_F(Tag, a_stage_stands_where_its_positions_say)
+{
+    start("lenssweeptag positions=\"<10.0,7.5,-1.25>\"");
+    for (const double position : {10.0, 7.5, -1.25, 10.0}) {
+        const GstFocusInfo focus = push(new_frame());
+        EXPECT_DOUBLE_EQ(focus.position_um, position);
+        EXPECT_EQ(focus.planes, 3U);
+        EXPECT_TRUE(std::isnan(focus.power));
+    }
+}
+
+TEST_F(Tag, a_stage_moves_by_the_step)
+{
+    start("lenssweeptag planes=4 step-um=-2.5");
+    for (const double position : {0.0, -2.5, -5.0, -7.5, 0.0})
+        EXPECT_DOUBLE_EQ(push(new_frame()).position_um, position);
+}
+
+TEST_F(Tag, positions_that_nobody_said_are_not_known)
+{
+    start();
+    EXPECT_TRUE(std::isnan(push(new_frame()).position_um));
+}
+
 TEST_F(Tag, pixels_are_not_copied_even_of_a_buffer_of_others)
 {
     start();
@@ -220,6 +244,12 @@ TEST(TagErrors, what_a_mode_needs_is_told)
     EXPECT_NE(error_of("mode=step lens=webcam:/dev/video0").find("v4l2:/dev/video0"), std::string::npos);
     EXPECT_NE(error_of("mode=step lens=optotune:/dev/ttyACM-none").find("dialout"), std::string::npos);
     EXPECT_NE(error_of("mode=sync").find("sync-line"), std::string::npos);
+    EXPECT_NE(error_of("positions=<1.0,3.0,2.0>").find("all rise or all fall"), std::string::npos);
+    EXPECT_NE(error_of("positions=<1.0>").find("2 to 64 planes"), std::string::npos);
+    EXPECT_NE(error_of("positions=<1.0,2.0> step-um=1").find("both set"), std::string::npos);
+    EXPECT_NE(error_of("positions=<1.0,2.0> powers=<3.0,2.0,1.0>").find("2 planes and powers 3"),
+              std::string::npos);
+    EXPECT_NE(error_of("step-um=nan").find("step-um"), std::string::npos);
     EXPECT_NE(error_of("lens-profile=/no/lens.yaml").find("lens that is moved"), std::string::npos);
     EXPECT_NE(error_of("mode=sync sync-line=DFF-NO-SUCH-LINE").find("gpio"), std::string::npos);
 }
