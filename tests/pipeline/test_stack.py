@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """test_stack.py SOURCE_ROOT: dff-stack as a user runs it, from folders to files."""
+import json
 import os
 import pathlib
 import signal
@@ -62,7 +63,7 @@ class Results(Program):
     def test_all_of_them(self):
         self.write_sweep()
         names = {'output': 'all.tif', 'depth': 'z.tif', 'depth-code': 'z.png', 'depth-colours': 'c.jpg', 'index': 'i.png',
-                 'confidence': 'sure.png', 'cloud': 'p.ply', 'save-alignment': 'a.json', 'video': 'v.webm'}
+                 'confidence': 'sure.png', 'cloud': 'p.ply', 'save-alignment': 'a.json', 'video': 'v.webm', 'mesh': 'm.glb', 'report': 'r.html'}
         finished = self.stack(self.photos, *(word for name, file in names.items() for word in (f'--{name}', self.out / file)))
         self.assertEqual([line.split()[1] for line in finished.stdout.splitlines()], [f'p{number}.png' for number in range(PLANES)])
         self.assertEqual(sorted(path.name for path in self.out.iterdir()), sorted([*names.values(), 'photos']))
@@ -80,7 +81,32 @@ class Results(Program):
         np.testing.assert_array_equal(index[:, :, 0], np.nan_to_num(np.round(depth[:, :, 0]) + 1))
         header, _, vertices = (self.out / 'p.ply').read_bytes().partition(b'end_header\n')
         self.assertIn(f'element vertex {len(vertices) // 15}'.encode(), header)
+        self.assert_mesh((self.out / 'm.glb').read_bytes())
+        page = (self.out / 'r.html').read_text()
+        self.assertEqual(page.count('<img '), 3 + PLANES)
+        self.assertNotIn('src="http', page)
+        self.assertIn('6 p5.png', page)
         self.assertTrue((self.out / 'v.webm').read_bytes().startswith(b'\x1aE\xdf\xa3'))
+
+    def assert_mesh(self, data):
+        """A surface whose left is nearest to the viewer."""
+        magic, version, length, json_length = struct.unpack('<4sIII', data[:16])
+        self.assertEqual((magic, version, length), (b'glTF', 2, len(data)))
+        facts, binary = json.loads(data[20:20 + json_length]), data[28 + json_length:]
+        self.assertEqual(facts['buffers'][0]['byteLength'], len(binary))
+        arrays = []
+        for accessor in facts['accessors']:
+            view = facts['bufferViews'][accessor['bufferView']]
+            kind = {5126: '<f4', 5125: '<u4'}[accessor['componentType']]
+            part = np.frombuffer(binary[view['byteOffset']:view['byteOffset'] + view['byteLength']], kind)
+            arrays.append(part.reshape(accessor['count'], -1))
+        vertices, places, faces = arrays
+        self.assertEqual(len(vertices), len(places))
+        self.assertLess(faces.max(), len(vertices))
+        left, right = (np.median(vertices[part][:, 2]) for part in (places[:, 0] < 0.2, places[:, 0] > 0.8))
+        self.assertGreater(left, right + 0.1)
+        image = facts['bufferViews'][facts['images'][0]['bufferView']]
+        self.assertEqual(binary[image['byteOffset']:image['byteOffset'] + 2], b'\xff\xd8')
 
     def test_16_bits_of_grey_stay(self):
         ramp = np.linspace(10000, 50000, WIDTH)

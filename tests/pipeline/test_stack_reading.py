@@ -266,6 +266,8 @@ class Order(Sweeps):
         places = [0, 1, 2, 7, 3, 4, 5, 6, 8, 9]
         self.assertEqual(order.out_of_place([view(place) for place in places]), [3])
         self.assertEqual(order.out_of_place([view(place) for place in sorted(places)]), [])
+        flicker = np.random.default_rng(2).uniform(0.95, 1.05, 20)
+        self.assertEqual(order.out_of_place([gain * view(0.01 * place) for place, gain in enumerate(flicker)]), [])
 
     def test_the_same_picture_is_taken_once(self):
         shutil.copy(self.photos / '1.tif', self.photos / '3b.tif')

@@ -32,6 +32,8 @@ RESULTS
             pictures is known: from --step, or from an OME-TIFF; else plane numbers, 0 for the first picture of the order.
             PNG: 16 bits; the description in the file says what a pixel means, 0 is not known.
   --index   of each pixel the number of the picture in which it is sharp, 1 for the first of the order, 0 where not known.
+  --cloud, --mesh  in micrometres where the step and the size of a pixel are known; else the depth is stretched to a fifth of the
+            width. The mesh is one unit wide, and torn where depth jumps.
 
 MEMORY
   What does not fit is computed in slabs of pictures that overlap, whose results become a stack of their own, and in tiles
@@ -102,6 +104,8 @@ def add_results(group):
     group.add_argument('--index', metavar='FILE', type=whole, help='which picture each pixel is sharp in')
     group.add_argument('--confidence', metavar='FILE', type=whole, help='how clear the depth of each pixel is, 0 to 255')
     group.add_argument('--cloud', metavar='FILE', type=ending_in('.ply'), help='a point cloud with colours')
+    group.add_argument('--mesh', metavar='FILE', type=ending_in('.glb'), help='a surface with the picture on it, for 3D viewers')
+    group.add_argument('--report', metavar='FILE', type=ending_in('.html'), help='a page of order, alignment, evenness and depth')
     group.add_argument('--video', metavar='FILE', type=ending_in('.webm'), help='a short video that rocks before the scene')
     group.set_defaults(picture_path=picture)
 
@@ -110,7 +114,7 @@ def add_order(group):
     group.add_argument('--order', choices=order.ORDERS, default='name', help='what the order of the pictures is (%(default)s)')
     group.add_argument('--far-first', action='store_true', help='the first picture of the order has the farthest focus')
     group.add_argument('--step', metavar='UM', type=positive, help='micrometres of focus from picture to picture')
-    group.add_argument('--pixel-size', metavar='UM', type=positive, help='micrometres that a pixel shows, for the point cloud')
+    group.add_argument('--pixel-size', metavar='UM', type=positive, help='micrometres that a pixel shows, for cloud and mesh')
 
 
 def add_work(group):
@@ -135,7 +139,7 @@ def workers(text):
     return int(text)
 
 
-ONE_STACK_ONLY = ('depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'video', 'save_alignment', 'pixel_size')
+ONE_STACK_ONLY = ('depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'mesh', 'report', 'video', 'save_alignment', 'pixel_size')
 
 
 def check_batch(made, options):
@@ -160,7 +164,7 @@ def check(made, options):
 def check_one(made, options):
     if not options.pictures:
         made.error('name the pictures, or a folder of them')
-    outputs = ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'video', 'save_alignment')
+    outputs = ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'mesh', 'report', 'video', 'save_alignment')
     if not any(getattr(options, name) for name in outputs):
         made.error('say where the result goes: -o result.tif')
     if options.output:

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from dff_stack import Unusable, alignment, arguments, batch, cloud, depths, engine, listed, memory, order, results, slabs, solve, sweep, video
+from dff_stack import Unusable, alignment, arguments, batch, depths, engine, listed, memory, order, output, results, slabs, solve, sweep
 from dff_stack.progress import Progress, spoken
 
 
@@ -31,6 +31,7 @@ def fitting(found, look, say):
                            f'--align off takes them as they are')
         say(f'   Left out, since no shift, turn, zoom or perspective brings them onto the others: {words}')
         found.leave_out(misfits)
+        look.leave_out(misfits)
     return aligned.without(misfits).warps
 
 
@@ -44,46 +45,13 @@ def warps_of(options, found, look, say, progress):
     return fitting(found, look, say)
 
 
-def micrometres(found, step_um):
-    """Positions of the stage where they are known."""
-    if step_um:
-        depths.take_step(found.pictures, step_um)
+def process(options, progress, tell):
+    said = []
 
+    def say(text):
+        said.append(text)
+        tell(text)
 
-def write(options, files, found, solved, warps, pixel_um):
-    width, height = found.size
-    description = (f'{found.count} pictures of a focus sweep, {found.pictures[0].name} to {found.pictures[-1].name}, '
-                   f'{"as they lie" if options.align == "off" else "aligned"}, method=volume, blend=sharp')
-    pixels = found.encoding.decode(solved.picture)
-    depth, unit, extent = depths.heights(solved.depth, found.pictures)
-    if options.output:
-        results.write_picture(files, options.output, pixels, found.pictures[0].spec, description)
-    if options.depth:
-        results.write_depth(files, options.depth, depth, unit, extent)
-    if options.depth_code:
-        results.write_depth_code(files, options.depth_code, depth, unit, extent)
-    if options.depth_colours:
-        code = results.code_of(solved.depth, 0, found.count - 1)
-        colours = engine.depth_colours(code, lambda text: None)
-        results.write_colours(files, options.depth_colours, colours, 'depth: warm is near, black is not known')
-    if options.index:
-        numbers = np.nan_to_num(np.round(solved.depth) + 1).astype(np.int64)
-        results.write_numbers(files, options.index, numbers, 'number of the picture in which a pixel is sharp, 0 is not known')
-    if options.confidence:
-        results.write_numbers(files, options.confidence, solved.confidence, '255 times the confidence of the depth')
-    if options.save_alignment:
-        names = [picture.name for picture in found.pictures]
-        files.begin(options.save_alignment).write_text(alignment.text_of(warps, width, height, names))
-    if options.cloud:
-        of_pixel, of_depth, words = cloud.scales(width, extent, unit, pixel_um)
-        cloud.write_ply(files.begin(options.cloud), depth, results.as_file_holds(pixels, '.jpg'), of_pixel, of_depth, words)
-
-
-    if options.video:
-        video.write(files.begin(options.video), results.as_file_holds(pixels, '.jpg'), solved.depth, found.count, lambda text: None)
-
-
-def process(options, progress, say):
     engine.start()
     pictures, pixel_um = sweep.gather(options.pictures, options.order, options.far_first, say)
     if not options.quiet:
@@ -99,16 +67,16 @@ def process(options, progress, say):
     look = found.look_through(first_plan.slabs[0][1], progress)
     sweep.without_duplicates(found, look, say)
     order.tell_of_doubts(found.pictures, look.thumbnails, say)
-    micrometres(found, options.step)
+    if options.step:
+        depths.take_step(found.pictures, options.step)
     with results.together() as files:
         warps = warps_of(options, found, look, say, progress)
-        del look
         work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'))
         solved = solve.solve(found, warps, work)
         progress.begin('Writing', 1)
-        write(options, files, found, solved, warps, options.pixel_size or pixel_um)
+        output.Output(options, found, look, solved, warps, pixel_um, said).write(files)
     progress.end()
-    say(f'== {found.count} pictures in {spoken(progress.seconds())}')
+    tell(f'== {found.count} pictures in {spoken(progress.seconds())}')
 
 
 def ended(signum, _):

@@ -70,8 +70,8 @@ def duplicates(fingerprints):
 
 
 def unlikeness(thumbnails):
-    """How much every two pictures differ, their brightness aside."""
-    flat = np.stack([thumbnail.ravel() - thumbnail.mean() for thumbnail in map(np.float32, thumbnails)])
+    """How much every two pictures differ, their brightness and contrast aside."""
+    flat = np.stack([(thumbnail.ravel() - thumbnail.mean()) / max(thumbnail.std(), 1) for thumbnail in map(np.float32, thumbnails)])
     return np.abs(flat[:, None] - flat[None]).mean(2)
 
 
@@ -81,12 +81,13 @@ def out_of_place(thumbnails):
     if len(thumbnails) < 5:
         return []
     unlike = unlikeness(thumbnails)
+    usual = np.median(np.diag(unlike, 1))
     found = []
     for z in range(1, len(thumbnails) - 1):
         here = min(unlike[z - 1, z], unlike[z, z + 1])
         elsewhere = min((max(unlike[z, k], unlike[z, k + 1]) for k in range(len(thumbnails) - 1) if z not in (k, k + 1)),
                         default=here)
-        if 2 * unlike[z - 1, z + 1] < here and 2 * elsewhere < here:
+        if here > max(2 * unlike[z - 1, z + 1], 2 * elsewhere, 3 * usual):
             found.append(z)
     return found
 

@@ -37,6 +37,10 @@ class Look:
     thumbnails: list
     white: float      # the brightest of all, of numbers with a point
 
+    def leave_out(self, numbers):
+        for values in (self.lumas, self.thumbnails):
+            values[:] = [value for number, value in enumerate(values) if number not in numbers]
+
 
 class Sweep:
     """The pictures as the planes of a stack."""
@@ -119,5 +123,4 @@ def without_duplicates(sweep, look, say):
     if sweep.count - len(numbers) < 2:
         raise Unusable('all pictures are the same; a focus sweep has 2 or more that differ')
     sweep.leave_out(numbers)
-    for values in (look.lumas, look.thumbnails):
-        values[:] = [value for number, value in enumerate(values) if number not in numbers]
+    look.leave_out(numbers)
