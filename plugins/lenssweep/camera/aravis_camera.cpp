@@ -246,6 +246,14 @@ bool AravisCamera::is_integer(const std::string &feature)
     return ARV_IS_GC_INTEGER(node) && !ARV_IS_GC_FLOAT(node);
 }
 
+bool AravisCamera::is_command(const std::string &feature)
+{
+    if (!has(feature))
+        return false;
+    const std::lock_guard lock(mutex_);
+    return ARV_IS_GC_COMMAND(arv_device_get_feature(arv_camera_get_device(camera_.get()), feature.c_str()));
+}
+
 std::string AravisCamera::unit(const std::string &feature)
 {
     const std::lock_guard lock(mutex_);

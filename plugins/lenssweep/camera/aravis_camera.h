@@ -111,6 +111,7 @@ public:
 
     bool has(const std::string &feature) override;
     bool is_integer(const std::string &feature) override;
+    bool is_command(const std::string &feature) override;
     std::string unit(const std::string &feature) override;
     double get_float(const std::string &feature) override;
     void set_float(const std::string &feature, double value) override;

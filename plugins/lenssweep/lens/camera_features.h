@@ -21,6 +21,9 @@ public:
     /* Whether an existing feature is an IInteger (and no IFloat). */
     virtual bool is_integer(const std::string &feature) = 0;
 
+    /* Whether the camera has the feature now, and it is an ICommand. */
+    virtual bool is_command(const std::string &feature) = 0;
+
     /* What the camera says of an existing number's unit; mostly empty. */
     virtual std::string unit(const std::string &feature) = 0;
 

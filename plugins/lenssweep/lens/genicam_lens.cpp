@@ -18,9 +18,18 @@ constexpr std::chrono::seconds longest_move{5};
 
 constexpr const char *calibrated_feature = "FocalPower";
 constexpr const char *selector = "OpticControllerSelector";
-constexpr const char *initialize = "OpticControllerInitialize";
-constexpr const char *controller_status = "OpticControllerStatus";
 constexpr const char *focus_status = "FocusStatus";
+
+/* What makes optics ready, in this order, and what tells that they are. The first two are makers' own, the
+ * others the SFNC's; FocusInitialize is there only if it is needed beside OpticControllerInitialize. */
+struct Preparation {
+    const char *command;
+    const char *status;
+};
+constexpr Preparation preparations[] = {{"LensConnection", "LensStatus"},
+                                        {"LensConnect", "LensStatus"},
+                                        {"OpticControllerInitialize", "OpticControllerStatus"},
+                                        {"FocusInitialize", focus_status}};
 
 /* What the camera throws becomes an error of the lens. */
 template <typename Access> auto access(Access use)
@@ -131,13 +140,20 @@ bool GenicamLens::wait_ready(const std::string &status, const std::stop_token &s
     }
 }
 
+bool GenicamLens::needs(const std::string &command, const std::string &status)
+{
+    return access([&] { return camera_.is_command(command); }) &&
+           !(access([&] { return camera_.has(status); }) && readiness(status) == Readiness::Ready);
+}
+
+/* Connects, then initialises what says that it is not. */
 void GenicamLens::start()
 {
-    const bool initialized = access([this] { return camera_.has(controller_status); }) &&
-                             readiness(controller_status) == Readiness::Ready;
-    if (!initialized && access([this] { return camera_.has(initialize); })) {
-        access([this] { camera_.execute(initialize); });
-        wait_ready(controller_status, {});
+    for (const auto &[command, status] : preparations) {
+        if (needs(command, status)) {
+            access([&] { camera_.execute(command); });
+            wait_ready(status, {});
+        }
     }
 }
 

@@ -23,7 +23,7 @@ public:
 
     void prepare(const LensSweep &sweep) override;
 
-    /* Has the optics initialised, where they must be; that may take seconds. */
+    /* Has the optics connected and initialised, where they must be; that may take seconds. */
     void start() override;
     void stop() override {}
     bool calibrated() const override;
@@ -39,6 +39,7 @@ private:
     enum class Readiness { Ready, Busy, NotInitialized, Failed };
 
     Readiness readiness(const std::string &status);
+    bool needs(const std::string &command, const std::string &status);
     bool wait_ready(const std::string &status, const std::stop_token &stop);
 
     double value_of(const SweepPlan &plan, unsigned plane, std::pair<double, double> range) const;

@@ -33,6 +33,7 @@ public:
                booleans.contains(feature);
     }
     bool is_integer(const std::string &feature) override { return integers.contains(feature); }
+    bool is_command(const std::string &) override { return false; }
     std::string unit(const std::string &) override { return "1/m"; }
     double get_float(const std::string &) override { return 0; }
     void set_float(const std::string &feature, double value) override

@@ -30,6 +30,10 @@ public:
                std::find(commands.begin(), commands.end(), feature) != commands.end();
     }
     bool is_integer(const std::string &feature) override { return integers.contains(feature); }
+    bool is_command(const std::string &feature) override
+    {
+        return std::find(commands.begin(), commands.end(), feature) != commands.end();
+    }
     std::string unit(const std::string &) override { return "1/m"; }
     double get_float(const std::string &) override { return 0; }
     void set_float(const std::string &feature, double value) override
@@ -123,6 +127,31 @@ TEST(GenicamLens, optics_are_selected_and_initialised_before_the_first_move)
                                                      "OpticControllerInitialize"}));
     lens.start(); /* once is enough */
     EXPECT_EQ(camera.done.size(), 2U);
+}
+
+TEST(GenicamLens, a_makers_lens_is_connected_first_and_a_focus_that_needs_it_is_initialised)
+{
+    FakeCamera camera;
+    camera.floats["FocalPower"] = {0.0, 6.0};
+    camera.statuses["LensStatus"] = {"NotConnected", "Busy", "Ready"};
+    camera.statuses["FocusStatus"] = {"NotInitialized", "Busy", "Ready"};
+    camera.commands = {"FocusInitialize", "LensConnect"};
+    dff::GenicamLens lens(camera, "FocalPower", {});
+    lens.prepare(sweep(2, 5.0, 0.0));
+    lens.start();
+    EXPECT_EQ(camera.done, (std::vector<std::string>{"LensConnect", "FocusInitialize"}));
+    EXPECT_EQ(camera.statuses["LensStatus"].front(), "Ready");
+    EXPECT_EQ(camera.statuses["FocusStatus"].front(), "Ready");
+}
+
+TEST(GenicamLens, what_is_called_like_a_command_and_is_none_is_let_be)
+{
+    FakeCamera camera;
+    camera.floats["FocalPower"] = {0.0, 6.0};
+    camera.statuses["LensConnection"] = {"Auto"};
+    dff::GenicamLens lens(camera, "FocalPower", {});
+    lens.start();
+    EXPECT_TRUE(camera.done.empty());
 }
 
 TEST(GenicamLens, focus_status_is_asked_until_the_lens_rests)
