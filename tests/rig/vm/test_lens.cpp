@@ -7,6 +7,7 @@
 #include "rig.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -152,4 +153,25 @@ TEST(VideoLens, points_of_a_profile_say_where_it_goes)
     std::ofstream(path) << "%YAML:1.0\n---\nlens: \"another\"\nvergence: [ 0, 2 ]\nposition: [ 0, 1023 ]\n";
     const auto other = dff::open_lens(dff::LensUri::parse("v4l2:/dev/video0"), {path});
     EXPECT_THROW(other->prepare({dff::SweepPlan::even(3, 2.0, 0.0)}), std::invalid_argument);
+}
+
+TEST(EveryLens, two_hundred_starts_leave_no_file_open)
+{
+    const auto open_files = [] {
+        return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                             std::filesystem::directory_iterator());
+    };
+    const std::string uris[] = {"fpga:" + rig::i2c_bus(), "max14574:" + rig::i2c_bus(), "v4l2:/dev/video0"};
+    for (const std::string &uri : uris) {
+        const auto before = open_files();
+        for (int cycle = 0; cycle < 200; cycle++) {
+            const auto lens = dff::open_lens(dff::LensUri::parse(uri), {});
+            lens->prepare({dff::SweepPlan::even(3, 2.0, 0.0), 6400us, 6000us});
+            lens->start();
+            if (auto *stepped = dynamic_cast<dff::SteppedLens *>(lens.get()))
+                stepped->move_to(1);
+            lens->stop();
+        }
+        EXPECT_EQ(open_files(), before) << uri;
+    }
 }

@@ -89,7 +89,7 @@ TEST(StepMode, lenses_are_listed_and_errors_tell_of_them)
     EXPECT_NE(pipeline.run().find("focus 40 to 220, lens=v4l2:/dev/video0"), std::string::npos);
 }
 
-TEST(StepMode, bus_that_does_not_answer_ends_in_an_error)
+TEST(StepMode, bus_that_does_not_answer_ends_in_an_error_and_may_come_back)
 {
     Pipeline pipeline("videotestsrc is-live=true ! video/x-raw,framerate=30/1 ! lenssweeptag lens=max14574:" +
                       rig::i2c_bus() + " mode=step planes=2 ! appsink name=out max-buffers=100");
@@ -99,6 +99,9 @@ TEST(StepMode, bus_that_does_not_answer_ends_in_an_error)
     const std::string error = pipeline.wait();
     rig::fail_i2c_transfers(0);
     EXPECT_NE(error.find("sweep has stopped"), std::string::npos) << error;
+    pipeline.set_state(GST_STATE_NULL);
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    EXPECT_TRUE(pipeline.pull("out")) << "it is back again";
 }
 
 TEST(SyncMode, frames_are_labelled_by_the_edges_of_the_line)

@@ -175,26 +175,27 @@ TEST_F(Step, frames_are_dropped_until_the_camera_says_that_its_lens_is_there)
 TEST_F(Step, frames_that_have_piled_up_are_older_than_what_the_camera_says)
 {
     using namespace std::chrono_literals;
-    constexpr uint64_t period = second / 200;
-    auto owned = std::make_unique<LateCamera>(2);
-    LateCamera &camera = *owned;
-    StepTagger tagger(std::move(owned), 3, 0);
-    tagger.set_period(period);
-    std::vector<std::pair<uint64_t, int>> piled; /* time and plane */
-    unsigned labelled = 0;
-    for (int i = 0; i < 200; i++) {
-        std::this_thread::sleep_for(5ms);
-        piled.emplace_back(now_ns(), camera.take());
-        if (i % 20 > 14)
-            continue; /* the pipeline is busy */
-        for (const auto &[time, plane] : piled) {
-            const auto found = tagger.label(time, {});
-            labelled += found.has_value();
-            if (found) {
-                EXPECT_EQ(plane, static_cast<int>(found->plane)) << "frame " << i;
+    for (unsigned delay = 1; delay < 5; delay++) {
+        auto owned = std::make_unique<LateCamera>(delay);
+        LateCamera &camera = *owned;
+        StepTagger tagger(std::move(owned), 3, 0);
+        tagger.set_period(second / 200);
+        std::vector<std::pair<uint64_t, int>> piled; /* time and plane */
+        unsigned labelled = 0;
+        for (int i = 0; i < 80; i++) {
+            std::this_thread::sleep_for(5ms);
+            piled.emplace_back(now_ns(), camera.take());
+            if (i % 20 > 14)
+                continue; /* the pipeline is busy */
+            for (const auto &[time, plane] : piled) {
+                const auto found = tagger.label(time, {});
+                labelled += found.has_value();
+                if (found) {
+                    EXPECT_EQ(plane, static_cast<int>(found->plane)) << "frame " << i << ", delay " << delay;
+                }
             }
+            piled.clear();
         }
-        piled.clear();
+        EXPECT_GT(labelled, 6U);
     }
-    EXPECT_GT(labelled, 20U);
 }
