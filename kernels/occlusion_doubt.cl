@@ -5,7 +5,7 @@
  * for each plane between them, so that a foreground grows fat. With b the blur step in pixels, distances in cells:
  *
  *     far(p) = the greatest of u(p') within b / SCALE, and of u(p') - 1.25 (2 SCALE / b) |p' - p| anywhere
- *     d = 1 / (1 + 8 g o max(0, far - u - 0.5)),  g = clip(b / 2 - 1.25 - .5t, 0, 1)
+ *     d = 1 / (1 + 8 g o max(0, far - u - 0.5)),  g = clip((.5 + t) (b - 2.5 - .5t), 0, 1)
  *     o = clip(1 - (C_f - C_u) / 0.7, 0, 1),  C_f the least C from plane u + 1 to far + 1
  *
  * The confidence c <- d c: where it falls, depth comes from around by colour (depth_fill.cl). What clearly is in no farther
@@ -51,7 +51,7 @@ __kernel void doubt_nearer_side(__global const float *u, __global const short *n
                                 float blur_step, int width, int stride, int planes)
 {
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    const float share = 8.0f * clamp(0.5f * blur_step - 1.25f - 0.5f * noise->t, 0.0f, 1.0f);
+    const float share = 8.0f * clamp((0.5f + noise->t) * (blur_step - 2.5f - 0.5f * noise->t), 0.0f, 1.0f);
     for (int x = 0; x < width; x += 16) {
         const float16 position = READ_WIDE(u + row + x);
         const float16 far = convert_float16(max(READ_SHORTS(near_by + row + x), READ_SHORTS(cone + row + x))) * (1.0f / FAR_ONE);

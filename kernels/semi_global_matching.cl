@@ -219,7 +219,7 @@ __kernel void follow_rows(__global const short *cost, __global const short *edge
 
 /* u: the least of the three totals together, and where between the planes: with v the vertex of a parabola through its
  * neighbours, v (1 + k) / (1 + 2 k |v|), k = 2 - 1.4 t, since the totals come to a point rather than to a parabola's foot
- * (two straight lines would be k = 1) and v lies too near to the plane. c = mean_z C, its ends mirrored.
+ * (two straight lines would be k = 1) and v lies too near to the plane. c = mean_z C. The ends of both are mirrored.
  * Work-items (1, low height). */
 __kernel void decide(__global const short *total_down, __global const short *total_up,
                      __global const short *total_along, __global const short *cost, __global float *u,
@@ -260,5 +260,6 @@ __kernel void decide(__global const short *total_down, __global const short *tot
         CELLS(u + row + x) = position;
         CELLS(confidence + row + x) = clamp(convert_float8(cost_sum) * (4.0f / COST_ONE / PLANES), 0.0f, 1.0f);
     }
+    mirror_ends(u + row, width);
     mirror_ends(confidence + row, width);
 }

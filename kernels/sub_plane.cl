@@ -7,6 +7,9 @@
  *
  *     u <- u + (1 - .6t) (v - u)   where it opens upwards and lies within half a plane of u
  *
+ * Where depth steps by more than a plane around, as far as H is blurred, H mixes two surfaces: there v must lie within a
+ * quarter of a plane.
+ *
  * H is less its floor, the 10th percentile of min_z H and at most .8 + .2t of the least of the three, and at least
  * a fiftieth of the greatest.
  */
@@ -24,7 +27,7 @@ INLINE float coarser_at(__global const short *focus, float x, float y, int heigh
     return mix(start, end, y - top);
 }
 
-INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, float16 middle, float floor, float t)
+INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, float16 middle, float16 most, float floor, float t)
 {
     const float most_floor = 0.8f + 0.2f * t, trust = 1.0f - 0.6f * t;
     const float16 own_floor = min(most_floor * min(min(before, here), after), floor);
@@ -33,15 +36,31 @@ INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, f
                   c = highest / max(after - own_floor, least);
     const float16 bend = a - 2.0f * b + c;
     const float16 vertex = middle + 0.5f * (a - c) / max(bend, 1e-4f);
-    const int16 is_one = bend > 1e-4f && fabs(vertex - u) <= 0.5f;
+    const int16 is_one = bend > 1e-4f && fabs(vertex - u) <= most;
     return is_one ? u + trust * (vertex - u) : u;
+}
+
+/* How far a vertex may lie from u: of 3x3 cells, `spacing` apart. The sides of u are mirrored. */
+INLINE float16 most_way(__global const float *u, int x, int y, int spacing, int height, int stride)
+{
+    float16 least = INFINITY, greatest = -INFINITY;
+    for (int j = -1; j <= 1; j++) {
+        __global const float *cells = u + (size_t)reflect(y + j * spacing, height) * stride + SIDE + x;
+        UNROLL
+        for (int i = -1; i <= 1; i++) {
+            const float16 other = READ_WIDE(cells + i * spacing);
+            least = min(least, other);
+            greatest = max(greatest, other);
+        }
+    }
+    return select((float16)0.5f, (float16)0.25f, greatest - least > 1.0f);
 }
 
 /* placed: u so moved, its sides mirrored; focus: of a scale `factor` times as coarse. Work-items (1, low height). */
 __kernel void refine(__global const short *focus, __global const float *floor, __global const Noise *noise,
                      __global const float *u, __global float *placed, int factor, int width, int stride, int planes, int focus_height, int focus_stride)
 {
-    const int y = (int)get_global_id(1);
+    const int y = (int)get_global_id(1), height = (int)get_global_size(1), spacing = min(2 * factor, 8);
     const size_t row = (size_t)y * stride + SIDE, plane = (size_t)focus_height * focus_stride;
     for (int x = 0; x < width; x += 16) {
         const float16 position = READ_WIDE(u + row + x);
@@ -70,7 +89,7 @@ __kernel void refine(__global const short *focus, __global const float *floor, _
             here = vload16(0, lanes[1]);
             after = vload16(0, lanes[2]);
         }
-        WIDE(placed + row + x) = clamp(refined(position, before, here, after, middle, *floor, noise->t), 0.0f, planes - 1.0f);
+        WIDE(placed + row + x) = clamp(refined(position, before, here, after, middle, most_way(u, x, y, spacing, height, stride), *floor, noise->t), 0.0f, planes - 1.0f);
     }
     mirror_ends(placed + row, width);
 }

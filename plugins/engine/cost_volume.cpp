@@ -48,7 +48,7 @@ uint64_t CostVolume::scratch_bytes(const LowShape &low)
     return static_cast<uint64_t>(low.stride) * coarse_rows(low) * sizeof(cl_ushort);
 }
 
-void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise,
+void CostVolume::run(const cl::Buffer &focus, const SmallPlanes &small, const NoiseEstimate &noise,
                      float blur_step)
 {
     run_fine(focus, noise);
@@ -56,15 +56,15 @@ void CostVolume::run(const FocusVolume &focus, const SmallPlanes &small, const N
     run_guess(noise);
 }
 
-void CostVolume::run_fine(const FocusVolume &focus, const NoiseEstimate &noise)
+void CostVolume::run_fine(const cl::Buffer &focus, const NoiseEstimate &noise)
 {
     queue_.begin_stage("cost");
-    queue_.run(find_evidence_, low_.rows(), focus.volume(), noise.noise(), top_, range_, low_.width,
-               low_.stride, low_.planes);
+    queue_.run(find_evidence_, low_.rows(), focus, noise.noise(), top_, range_, low_.width, low_.stride,
+               low_.planes);
     queue_.run(summarise_, {1, 2}, top_, range_, medians_, largest_range_, low_.width, low_.height,
                low_.stride);
-    queue_.run(fine_cost_, low_.rows_of_planes(), focus.volume(), top_, medians_, noise.noise(), cost_,
-               low_.width, low_.stride);
+    queue_.run(fine_cost_, low_.rows_of_planes(), focus, top_, medians_, noise.noise(), cost_, low_.width,
+               low_.stride);
 }
 
 void CostVolume::run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step)

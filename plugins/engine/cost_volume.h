@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/focus_leak.h"
-#include "engine/focus_volume.h"
 #include "engine/small_planes.h"
 
 namespace dff {
@@ -16,8 +15,8 @@ public:
     /* Of device memory, beside pictures. */
     static uint64_t scratch_bytes(const LowShape &low);
 
-    /* blur_step: pixels a plane. */
-    void run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
+    /* focus: low pictures short [z]; blur_step: pixels a plane. */
+    void run(const cl::Buffer &focus, const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
 
     /* Low pictures short, their sides mirrored. */
     const cl::Buffer &cost() const { return cost_; }         /* [z]: C */
@@ -31,7 +30,7 @@ public:
     const cl::Buffer &evidence() const { return largest_range_; }
 
     /* The parts of run(). C is C0 after the first. */
-    void run_fine(const FocusVolume &focus, const NoiseEstimate &noise);
+    void run_fine(const cl::Buffer &focus, const NoiseEstimate &noise);
     void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
     void run_guess(const NoiseEstimate &noise);
 

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/depth_fill.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dff {
@@ -9,11 +10,12 @@ namespace dff {
 namespace {
 
 constexpr int iterations = 2;
+constexpr double usual_step = 8.0; /* pixels a plane; above, what is doubted is wider */
 
 /* Of Min et al. 2014: falls by four each time, all together lambda. */
-cl_float lambda_of(int iteration, float t)
+cl_float lambda_of(int iteration, float t, float blur_step)
 {
-    const double lambda = 100.0 * (1.0 + 2.0 * t);
+    const double lambda = 100.0 * std::max(1.0 + 5.0 * t, std::pow(blur_step / usual_step, 2));
     return static_cast<cl_float>(1.5 * lambda * std::pow(4.0, iterations - 1 - iteration) /
                                  (std::pow(4.0, iterations) - 1.0));
 }
@@ -32,7 +34,7 @@ DepthFill::DepthFill(CommandQueue &queue, const LowShape &low)
     quantile_ = Program(queue.device(), "cost_volume").kernel("quantile");
 }
 
-void DepthFill::run(const SemiGlobalMatching &matching, float t)
+void DepthFill::run(const SemiGlobalMatching &matching, float t, float blur_step)
 {
     queue_.begin_stage("fill");
     queue_.run(quantile_, {1}, matching.confidence(), high_confidence_, 0.9f, 255.0f, low_.width, low_.height,
@@ -40,9 +42,9 @@ void DepthFill::run(const SemiGlobalMatching &matching, float t)
     queue_.run(weigh_, low_.rows(), matching.u(), matching.confidence(), pair_, low_.width, low_.stride);
     for (int i = 0; i < iterations; i++) {
         queue_.run(smooth_columns_, {1, static_cast<size_t>(low_.width + 15) / 16}, pair_, matching.edges(),
-                   scratch_, lambda_of(i, t), low_.height, low_.stride);
+                   scratch_, lambda_of(i, t, blur_step), low_.height, low_.stride);
         queue_.run(smooth_rows_, {1, static_cast<size_t>(low_.height + 7) / 8}, pair_, matching.edges(),
-                   scratch_, lambda_of(i, t), low_.width, low_.height, low_.stride);
+                   scratch_, lambda_of(i, t, blur_step), low_.width, low_.height, low_.stride);
     }
     queue_.run(fill_, low_.rows(), pair_, matching.confidence(), high_confidence_, matching.u(), low_.width,
                low_.stride);

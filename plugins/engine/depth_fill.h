@@ -13,7 +13,7 @@ public:
     DepthFill(CommandQueue &queue, const LowShape &low);
 
     /* Changes matching.u() in place and mirrors its sides. t: of the noise, in which it reaches farther. */
-    void run(const SemiGlobalMatching &matching, float t);
+    void run(const SemiGlobalMatching &matching, float t, float blur_step);
 
     /* float: the 90th percentile of the confidence. */
     const cl::Buffer &high_confidence() const { return high_confidence_; }

@@ -8,8 +8,8 @@ namespace dff {
 struct VolumeMethod::Stages {
     Stages(CommandQueue &queue, const StackShape &shape, unsigned scale)
         : low(shape, scale), noise(queue, shape, low.scale), small(queue, shape, low),
-          focus(queue, shape, low), pyramid(queue, low), blur_step(queue, pyramid), cost(queue, low),
-          guide(queue, low), filter(queue, low), matching(queue, low), doubt(queue, low),
+          focus(queue, shape, low), pyramid(queue, low), blur_step(queue, pyramid), floor(queue, low),
+          cost(queue, low), guide(queue, low), filter(queue, low), matching(queue, low), doubt(queue, low),
           sub_plane(queue, low), fill(queue, low), upsampling(queue, shape, low)
     {
     }
@@ -20,6 +20,7 @@ struct VolumeMethod::Stages {
     FocusVolume focus;
     FocusPyramid pyramid;
     BlurStep blur_step;
+    NoiseFloor floor;
     CostVolume cost;
     GuideImage guide;
     GuidedFilter filter;
@@ -53,7 +54,7 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 14 * planes + 9 + 2 * 33; /* of shorts; one of floats is two */
+    const uint64_t pictures = 15 * planes + 9 + 2 * 33; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const bool is_interleaved_or_16 =
         shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;
@@ -86,14 +87,15 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
         measure(stack.as_new());
     }
     Stages &s = *stages_;
-    s.cost.run(s.focus, s.small, s.noise, blur_.step);
+    const bool is_noisy = blur_.t > NoiseFloor::quiet;
+    s.cost.run(is_noisy ? s.floor.run(s.focus, s.small) : s.focus.volume(), s.small, s.noise, blur_.step);
     s.guide.run(s.cost, s.small, s.noise);
     s.filter.run(s.cost.cost(), s.guide.guide(), s.noise);
     s.filter.doubt(s.guide.nearer(), s.noise);
     s.matching.run(s.filter.filtered(), s.guide.guide(), s.noise);
     s.doubt.run(s.matching, s.filter.filtered(), s.noise, blur_.step);
     s.sub_plane.run(s.matching.u(), s.focus, s.pyramid, s.noise, blur_.step);
-    s.fill.run(s.matching, blur_.t);
+    s.fill.run(s.matching, blur_.t, blur_.step);
     s.guide.run_at(s.matching.u(), s.small, s.noise);
     s.upsampling.run(s.matching.u(), s.guide, s.cost, s.noise, stack, coder, depth);
 

@@ -7,6 +7,7 @@
 #include "engine/depth_parameters.h"
 #include "engine/guided_filter.h"
 #include "engine/joint_upsampling.h"
+#include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
 #include "engine/sub_plane.h"
 

@@ -5,6 +5,7 @@
 #include "engine/blur_step.h"
 #include "engine/guided_filter.h"
 #include "engine/joint_upsampling.h"
+#include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
 #include "engine/sub_plane.h"
 #include "twin_volume.h"
@@ -53,8 +54,8 @@ protected:
           buffer(queue, shape), low(shape, GetParam().scale), coder(queue, shape),
           noise_stage(queue, shape, low.scale), small_stage(queue, shape, low),
           focus_stage(queue, shape, low), pyramid(queue, low), blur_stage(queue, pyramid),
-          cost_stage(queue, low), guide_stage(queue, low), filter_stage(queue, low), matching(queue, low),
-          doubt_stage(queue, low), sub_plane_stage(queue, low), fill_stage(queue, low),
+          floor_stage(queue, low), cost_stage(queue, low), guide_stage(queue, low), filter_stage(queue, low),
+          matching(queue, low), doubt_stage(queue, low), sub_plane_stage(queue, low), fill_stage(queue, low),
           upsampling(queue, shape, low),
           depth_map(queue.allocate(size_t{shape.width} * shape.height * sizeof(uint16_t)))
     {
@@ -133,7 +134,7 @@ protected:
     /* Runs everything up to the matching. */
     void run_to_matching()
     {
-        cost_stage.run(focus_stage, small_stage, noise_stage, close_planes);
+        cost_stage.run(focus_stage.volume(), small_stage, noise_stage, close_planes);
         guide_stage.run(cost_stage, small_stage, noise_stage);
         filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
         filter_stage.doubt(guide_stage.nearer(), noise_stage);
@@ -150,6 +151,7 @@ protected:
     void expect_occlusion_doubt();
     void expect_sub_plane();
     void expect_small_planes_and_focus_volume();
+    void expect_even_noise();
     void expect_cost_volume();
     void expect_guide_image();
     void expect_guided_filter_and_matching();
@@ -168,6 +170,7 @@ protected:
     FocusVolume focus_stage;
     FocusPyramid pyramid;
     BlurStep blur_stage;
+    NoiseFloor floor_stage;
     CostVolume cost_stage;
     GuideImage guide_stage;
     GuidedFilter filter_stage;
@@ -186,6 +189,7 @@ TEST_P(VolumeStages, evidence_agrees_with_its_twins)
 {
     expect_noise_as_made();
     expect_small_planes_and_focus_volume();
+    expect_even_noise();
     expect_cost_volume();
 }
 
@@ -246,7 +250,7 @@ void VolumeStages::expect_falls()
 
 void VolumeStages::expect_no_leak()
 {
-    cost_stage.run_fine(focus_stage, noise_stage);
+    cost_stage.run_fine(focus_stage.volume(), noise_stage);
     cost_stage.run_coarse(small_stage, noise_stage, close_planes);
     const Volume focus = read_shorts(cost_stage.coarse_focus(), shape.planes, 32);
     const Volume smooth = twin::smooth_along_z(focus, noise.t);
@@ -261,9 +265,13 @@ void VolumeStages::expect_no_leak()
 void VolumeStages::expect_occlusion_doubt()
 {
     std::vector<float> cells(size_t{1} * low.height * low.stride);
-    for (size_t i = 0; i < cells.size(); i++)
-        cells[i] =
-            static_cast<float>((i / 13 + i / (size_t{11} * low.stride)) % 5 * (shape.planes - 1)) / 4.0f;
+    for (int y = 0; y < low.height; y++)
+        for (int x = -LowShape::side; x < low.width + LowShape::side; x++) {
+            const int column = x < 0 ? -1 - x : x < low.width ? x : 2 * low.width - 1 - x;
+            const int step = (column / 13 + y / 11) % 5;
+            cells[y * low.stride + LowShape::side + x] =
+                static_cast<float>(step) * static_cast<float>(shape.planes - 1) / 4.0f;
+        }
     queue.commands().enqueueWriteBuffer(matching.u(), CL_TRUE, 0, cells.size() * sizeof(float), cells.data());
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
     const Volume cost = read_shorts(filter_stage.filtered(), shape.planes, 1024);
@@ -317,10 +325,24 @@ void VolumeStages::expect_small_planes_and_focus_volume()
                  twin::fine_focus(luma, noise, low.scale), noise.taps[0] == 64 ? 0.2f : 0.6f, 3);
 }
 
+void VolumeStages::expect_even_noise()
+{
+    const cl::Buffer &evened = floor_stage.run(focus_stage, small_stage);
+    const auto curve = read_back<float>(queue, floor_stage.curve(), 5);
+    const Volume focus = read_shorts(focus_stage.volume(), shape.planes, 32);
+    const std::vector<float> expected = twin::noise_curve(focus, read_small());
+    EXPECT_FLOAT_EQ(curve[3], expected[3]);
+    EXPECT_FLOAT_EQ(curve[4], expected[4]);
+    const auto at = [](const std::vector<float> &c, float i) { return c[0] + i * (c[1] + i * c[2]); };
+    for (const float i : {expected[3], 0.5f * (expected[3] + expected[4]), expected[4]})
+        EXPECT_NEAR(at(curve, i), at(expected, i), 0.05f * std::abs(at(expected, i)) + 1.0f);
+    expect_alike(read_shorts(evened, shape.planes, 32), twin::even_noise(focus, read_small(), curve), 0.06f);
+}
+
 void VolumeStages::expect_cost_volume()
 {
     const twin::Colours small = read_small();
-    cost_stage.run_fine(focus_stage, noise_stage);
+    cost_stage.run_fine(focus_stage.volume(), noise_stage);
     const Volume fine = twin::smooth_along_z(read_shorts(focus_stage.volume(), shape.planes, 32), noise.t);
     const Volume fine_cost = twin::fine_cost(fine, twin::median(twin::top_of(fine).values), noise.t);
     const Volume found = read_shorts(cost_stage.cost(), shape.planes, 1024);
@@ -397,10 +419,11 @@ void VolumeStages::expect_fill_and_upsampling()
 {
     const twin::Colours guide = read_guide();
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
-    fill_stage.run(matching, noise.t);
+    const float blur_step = GetParam().silent ? far_planes : close_planes;
+    fill_stage.run(matching, noise.t, blur_step);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
     const Volume filled = read(matching.u(), 1);
-    expect_alike(filled, twin::fill(u, confidence, guide, high, noise.t), 0.05f);
+    expect_alike(filled, twin::fill(u, confidence, guide, high, noise.t, blur_step), 0.05f);
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
     upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);

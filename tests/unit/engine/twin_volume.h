@@ -39,7 +39,8 @@ Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t);
 Volume match(const Volume &cost, const Colours &guide, float t);
 Volume decide(const Volume &total, float t);
 Volume mean_over_planes(const Volume &cost);
-Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t);
+Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t,
+            float blur_step);
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);
 std::vector<uint8_t> upsample_confidence(const Volume &confidence, unsigned width, unsigned height,
                                          unsigned scale);
@@ -54,6 +55,9 @@ Volume least_over_planes(const Volume &focus);
 float quantile(std::vector<float> values, double share);
 float fall_beside_peaks(const Volume &focus);
 Volume without_leak(const Volume &focus, float middle, float blur_step, unsigned scale, float t);
+/* c0, c1, c2 and the ends of its brightnesses, in the kernel's units of focus. */
+std::vector<float> noise_curve(const Volume &focus, const Colours &small);
+Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve);
 Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume &cost, float blur_step,
                          unsigned scale, float t);
 Volume refine(const Volume &u, const Volume &focus, float t);

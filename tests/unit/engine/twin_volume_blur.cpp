@@ -163,6 +163,64 @@ Volume without_leak(const Volume &focus, float middle, float blur_step, unsigned
     });
 }
 
+std::vector<float> noise_curve(const Volume &focus, const Colours &small)
+{
+    std::array<std::vector<float>, 16> values;
+    for (size_t i = 0; i < focus.values.size(); i++) {
+        const float light = small[0].values[i] + small[1].values[i] + small[2].values[i];
+        values[std::min(static_cast<size_t>(light / 768.0f * 16.0f), size_t{15})].push_back(32.0f *
+                                                                                            focus.values[i]);
+    }
+    /* Normal equations of the parabola, by Gauss's elimination. */
+    std::array<std::array<double, 4>, 3> rows{};
+    float least = 1.0f, greatest = 0.0f;
+    for (size_t bin = 0; bin < values.size(); bin++) {
+        if (values[bin].size() < 50)
+            continue;
+        const double brightness = (static_cast<double>(bin) + 0.5) / 16.0;
+        const double weight = std::sqrt(static_cast<double>(values[bin].size()));
+        least = std::min(least, static_cast<float>(brightness));
+        greatest = std::max(greatest, static_cast<float>(brightness));
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++)
+                rows[i][j] += weight * std::pow(brightness, i + j);
+            rows[i][3] += weight * std::pow(brightness, i) * quantile(values[bin], 0.1);
+        }
+    }
+    const double little = 1e-3 * rows[0][0];
+    rows[0][2] += little;
+    rows[1][1] += little;
+    rows[2][0] += little;
+    rows[2][2] += little;
+    for (int pivot = 0; pivot < 3; pivot++)
+        for (int i = 0; i < 3; i++) {
+            const double factor = rows[i][pivot] / rows[pivot][pivot];
+            for (int j = 0; j < 4 && i != pivot; j++)
+                rows[i][j] -= factor * rows[pivot][j];
+        }
+    std::vector<float> curve;
+    for (int i = 0; i < 3; i++)
+        curve.push_back(static_cast<float>(rows[i][3] / rows[i][i]));
+    curve.push_back(least);
+    curve.push_back(std::max(least, greatest));
+    return curve;
+}
+
+Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve)
+{
+    const auto noise_at = [&](int x, int y, unsigned z) {
+        const float light = (small[0].at(x, y, z) + small[1].at(x, y, z) + small[2].at(x, y, z)) / 768.0f;
+        const float i = std::clamp(light, curve[3], curve[4]);
+        return (curve[0] + i * (curve[1] + i * curve[2])) / 32.0f; /* FOCUS_ONE */
+    };
+    return like(focus, [&](int x, int y, unsigned z) {
+        float mean = 0.0f;
+        for (unsigned plane = 0; plane < focus.planes; plane++)
+            mean += noise_at(x, y, plane) / static_cast<float>(focus.planes);
+        return std::max(focus.at(x, y, z) - 1.2f * (noise_at(x, y, z) - mean), 0.0f);
+    });
+}
+
 Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume &cost, float blur_step,
                          unsigned scale, float t)
 {
@@ -179,7 +237,7 @@ Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume
             if (static_cast<float>(z) > own + 1.0f && static_cast<float>(z) < far + 1.0f)
                 rival = std::min(rival, cost.at(x, y, z));
         const float gain = rival - cost.at(x, y, static_cast<unsigned>(std::lrint(own)));
-        const float share = 8.0f * clip(0.5f * blur_step - 1.25f - 0.5f * t);
+        const float share = 8.0f * clip((0.5f + t) * (blur_step - 2.5f - 0.5f * t));
         return confidence.at(x, y) / (1.0f + share * clip(1.0f - gain / 0.7f) * beyond);
     });
 }
@@ -210,7 +268,14 @@ Volume refine(const Volume &u, const Volume &focus, float t)
         const float bend = h[0] - 2.0f * h[1] + h[2];
         const float vertex = static_cast<float>(middle) + 0.5f * (h[0] - h[2]) / std::max(bend, 1e-4f);
         const float position = u.at(x, y);
-        if (bend <= 1e-4f || std::abs(vertex - position) > 0.5f)
+        const int spacing = std::min(2 * static_cast<int>(factor), 8);
+        float least = position, greatest = position;
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++) {
+                least = std::min(least, at(u, x + i * spacing, y + j * spacing));
+                greatest = std::max(greatest, at(u, x + i * spacing, y + j * spacing));
+            }
+        if (bend <= 1e-4f || std::abs(vertex - position) > (greatest - least > 1.0f ? 0.25f : 0.5f))
             return position;
         return std::clamp(position + (1.0f - 0.6f * t) * (vertex - position), 0.0f, static_cast<float>(last));
     });

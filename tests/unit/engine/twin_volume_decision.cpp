@@ -244,17 +244,19 @@ Volume mean_over_planes(const Volume &cost)
     return mean;
 }
 
-Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t)
+Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t,
+            float blur_step)
 {
     Volume weighted = u, weights = u, result = u;
     for (size_t i = 0; i < u.values.size(); i++) {
         weights.values[i] = confidence.values[i] * confidence.values[i] + 1e-4f;
         weighted.values[i] = weights.values[i] * u.values[i];
     }
+    const double stiffness = std::max(1.0 + 5.0 * t, blur_step * blur_step / 64.0);
     for (const double share : {40.0, 10.0}) /* 1.5 * 100 * 4^(1 - i) / (4^2 - 1) */
         for (const bool along_rows : {false, true}) {
-            smooth(weighted, guide, share * (1.0 + 2.0 * t), along_rows);
-            smooth(weights, guide, share * (1.0 + 2.0 * t), along_rows);
+            smooth(weighted, guide, share * stiffness, along_rows);
+            smooth(weights, guide, share * stiffness, along_rows);
         }
     for (size_t i = 0; i < u.values.size(); i++) {
         const float own = std::min(confidence.values[i] / high_confidence, 1.0f);
