@@ -36,11 +36,20 @@ inline float mean_sample(__global const uchar *stack, __global const ulong2 *row
     return sum / planes;
 }
 
-/* Linear interpolation between the two planes around u. */
-inline float linear_sample(__global const uchar *stack, __global const ulong2 *rows, int x, int y, float u, int planes)
+/* How much steeper than its distance a plane's share is: without noise by a half, since the nearer of two planes is the
+ * sharper one; in noise not at all, where two planes have less of it than one. */
+inline float steepness_of(__global const Noise *noise)
+{
+    return 0.5f * clamp(1.0f - 2.0f * noise->t, 0.0f, 1.0f);
+}
+
+/* Between the two planes around u: with s the distance to the first, the second's share is s + steepness (s - 1/2). */
+inline float linear_sample(__global const uchar *stack, __global const ulong2 *rows, int x, int y, float u, int planes,
+                           float steepness)
 {
     const int z = min((int)u, planes - 2);
-    return mix(sample_at(stack, rows[z], x, y), sample_at(stack, rows[z + 1], x, y), u - z);
+    const float share = clamp(u - z + steepness * (u - z - 0.5f), 0.0f, 1.0f);
+    return mix(sample_at(stack, rows[z], x, y), sample_at(stack, rows[z + 1], x, y), share);
 }
 
 /* Mean weighted by exp(-(z - u)^2 / (2 SOFT_PLANES^2)): less noise than two planes have. */
@@ -58,13 +67,13 @@ inline float soft_sample(__global const uchar *stack, __global const ulong2 *row
     return sum / weights;
 }
 
-/* The soft mean where `noise` is given and says that there is noise: in silence it would only lose sharpness.
+/* The soft mean where it `is_soft` and there is noise: in silence it would only lose sharpness.
  * Writes the samples of one component, whose rows the table has from `first_row` on; `channels` interleaved samples
  * share a depth pixel. */
 __kernel void compose(__global const uchar *stack, __global const ulong2 *table, int first_row,
                       __global const ushort *depth, __global const float *positions, __global uchar *picture,
                       ulong2 picture_rows, int2 component_size, int channels, int subsampling, int2 depth_size,
-                      int depth_stride, int planes, __global const Noise *noise)
+                      int depth_stride, int planes, __global const Noise *noise, int is_soft)
 {
     __global const ulong2 *rows = table + first_row;
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -74,10 +83,10 @@ __kernel void compose(__global const uchar *stack, __global const ulong2 *table,
     float value;
     if (u < 0.0f)
         value = mean_sample(stack, rows, x, y, planes);
-    else if (noise && noise->t > 0.5f)
+    else if (is_soft && noise->t > 0.5f)
         value = soft_sample(stack, rows, x, y, u, planes);
     else
-        value = linear_sample(stack, rows, x, y, u, planes);
+        value = linear_sample(stack, rows, x, y, u, planes, steepness_of(noise));
     __global uchar *sample = picture + picture_rows.x + picture_rows.y * (ulong)y + (ulong)x * sizeof(SAMPLE);
     *(__global SAMPLE *)sample = (SAMPLE)(value + 0.5f);
 }

@@ -252,6 +252,7 @@ typedef struct {
     __global const uchar *stack;
     __global const ulong2 *rows; /* of the component's planes */
     int planes;
+    ushort steepness; /* of aif.cl, in 1/UNIT, even */
 } Source;
 
 INLINE __global const uchar *samples_at(const Source *source, int z, int x, int y)
@@ -273,9 +274,21 @@ INLINE int2 planes_between(ushort least, ushort most, int planes)
     return (int2)(least / UNIT, min(most / UNIT + 1, planes - 1));
 }
 
+/* Positions that give each plane the share of aif.cl when interpolated between. */
+#define STEEPENED(lanes, highest, lowest)                                                                              \
+    INLINE lanes __attribute__((overloadable)) steepened(lanes position, ushort steepness)                             \
+    {                                                                                                                  \
+        const lanes centre = (ushort)(steepness / 2), share = position & (ushort)(UNIT - 1);                           \
+        const lanes grown = share + (share * steepness >> (ushort)8);                                                  \
+        return position - share + lowest(highest(grown, centre) - centre, (lanes)(ushort)UNIT);                        \
+    }
+STEEPENED(ushort16, max, min)
+STEEPENED(ushort32, max32, min32)
+
 /* Between the two planes around each position: mostly the same two for all. */
-INLINE uchar32 linear_samples(const Source *source, int x, int y, ushort32 position)
+INLINE uchar32 linear_samples(const Source *source, int x, int y, ushort32 unsteepened)
 {
+    const ushort32 position = steepened(unsteepened, source->steepness);
     const int first = min(position[0] / UNIT, source->planes - 2);
     const ushort32 share = position - (ushort)(first * UNIT);
     ushort32 sum = UNIT / 2;
@@ -337,9 +350,10 @@ INLINE uchar16 any_samples(const Source *source, int x, int y, ushort16 position
     if (soft) {
         value = soft_samples(source, x, y, position, range.x, range.y);
     } else {
+        const ushort16 steep = steepened(position, source->steepness);
         ushort16 sum = UNIT / 2;
         for (int z = range.x; z <= range.y; z++) {
-            const short16 away = as_short16(position) - (short16)(short)(z * UNIT);
+            const short16 away = as_short16(steep) - (short16)(short)(z * UNIT);
             const short16 weight = max((short16)UNIT - max(away, -away), (short16)0);
             sum += as_ushort16(weight) * convert_ushort16(*(__global const lanes8 *)samples_at(source, z, x, y));
         }
@@ -353,18 +367,19 @@ __kernel void compose_strip(__global const uchar *stack, __global const ulong2 *
                             __global const ushort *depth_pixels, int2 depth_size, int depth_stride,
                             __global const ushort *position_table, float scale, __global uchar *picture,
                             __global const Component *components, int component_count, int planes,
-                            __global const Noise *noise)
+                            __global const Noise *noise, int is_soft)
 {
     ushort positions[(STRIP + 1) * STRIDE];
     ushort samples[4 * STRIDE];
     const Depth depth = {depth_pixels, depth_size.x, depth_size.y, depth_stride, position_table, scale};
     const int top = (int)get_group_id(0) * STRIP, rows = min(STRIP, depth.height - top);
-    const int soft = noise && noise->t > 0.5f;
+    const int soft = is_soft && noise->t > 0.5f;
+    const ushort steepness = 2 * (ushort)(0.25f * UNIT * clamp(1.0f - 2.0f * noise->t, 0.0f, 1.0f));
     const int unknown = strip_positions(&depth, top, rows, positions);
 
     for (int c = 0; c < component_count; c++) {
         const Component component = components[c];
-        const Source source = {stack, table + component.first_row, planes};
+        const Source source = {stack, table + component.first_row, planes, steepness};
         for (int row = 0; row < rows; row += component.subsampling) {
             const int y = (top + row) / component.subsampling;
             __global uchar *out = picture + component.offset + component.stride * (ulong)y;

@@ -108,7 +108,7 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
         stack_.assign(stack);
         if (blend != Blend::Sharp)
             limit_depth(pictures, depth.blur_step);
-        if (blend == Blend::Soft)
+        if (blend != Blend::Sharp)
             noise_.run(stack_);
         if (blend == Blend::Sharp)
             compose_sharp(pictures, layout);
@@ -153,7 +153,7 @@ void AifComposer::compose_pixels(const Pictures &pictures, std::span<const RowLa
                    static_cast<cl_int>(i * shape_.planes), softened_, positions_, pictures.output,
                    cl_ulong2{{layout[i].offset, layout[i].stride}}, component_size,
                    static_cast<cl_int>(c.channels), static_cast<cl_int>(c.subsampling), size_of(shape_),
-                   width, static_cast<cl_int>(shape_.planes), noise_of(blend));
+                   width, static_cast<cl_int>(shape_.planes), noise_.noise(), cl_int{blend == Blend::Soft});
     }
 }
 
@@ -176,12 +176,7 @@ void AifComposer::compose_strips(const Pictures &pictures, std::span<const RowLa
                       pictures.depth, size_of(shape_), static_cast<cl_int>(pictures.depth_stride), positions_,
                       position_scale_, pictures.output, picture_components_,
                       static_cast<cl_int>(components_.size()), static_cast<cl_int>(shape_.planes),
-                      noise_of(blend));
-}
-
-cl::Buffer AifComposer::noise_of(Blend blend) const
-{
-    return blend == Blend::Soft ? noise_.noise() : cl::Buffer();
+                      noise_.noise(), cl_int{blend == Blend::Soft});
 }
 
 } // namespace dff

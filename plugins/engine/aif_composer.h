@@ -57,7 +57,6 @@ private:
     void compose_sharp(const Pictures &pictures, std::span<const RowLayout> layout);
     void compose_pixels(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
     void compose_strips(const Pictures &pictures, std::span<const RowLayout> layout, Blend blend);
-    cl::Buffer noise_of(Blend blend) const;
 
     std::shared_ptr<Device> device_;
     StackShape shape_;

@@ -67,8 +67,33 @@ double position_of(const std::vector<uint16_t> &depth, const StackShape &shape, 
     return known ? sum / known : -1.0;
 }
 
-double twin_sample(const std::vector<double> &planes, double u, AifComposer::Blend blend)
+/* Planes without noise, none like another: Immerkaer's filter sees no slope. */
+TestStack quiet_stack(const StackShape &shape)
 {
+    TestStack stack(shape);
+    const std::vector<Component> components = shape.components();
+    for (size_t c = 0; c < components.size(); c++)
+        for (unsigned z = 0; z < shape.planes; z++)
+            for (unsigned y = 0; y < components[c].height; y++)
+                for (unsigned x = 0; x < components[c].width; x++) {
+                    const RowLayout &rows = stack.layout[c * shape.planes + z];
+                    const size_t first = rows.offset + rows.stride * y + components[c].sample_bytes * x;
+                    for (unsigned byte = 0; byte < components[c].sample_bytes; byte++)
+                        stack.memory[first + byte] =
+                            static_cast<std::byte>(20 + 30 * (z % 3) + 7 * z + y / 4);
+                }
+    return stack;
+}
+
+enum class Kind { Noisy, Quiet };
+
+double twin_sample(const std::vector<double> &planes, double u, AifComposer::Blend blend, Kind kind)
+{
+    if (kind == Kind::Quiet && u >= 0.0) {
+        const size_t z = std::min(static_cast<size_t>(u), planes.size() - 2);
+        const double s = u - static_cast<double>(z), share = std::clamp(1.5 * s - 0.25, 0.0, 1.0);
+        return planes[z] + share * (planes[z + 1] - planes[z]);
+    }
     const auto count = static_cast<int>(planes.size());
     double sum = 0.0, weights = 0.0;
     for (int z = 0; z < count; z++) {
@@ -88,12 +113,24 @@ double twin_sample(const std::vector<double> &planes, double u, AifComposer::Ble
 } // namespace
 
 class AifFormats
-    : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend, KernelStyle, bool>> {};
+    : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend, KernelStyle, bool>> {
+protected:
+    static void expect_twin(const TestStack &stack, Kind kind);
+};
 
 TEST_P(AifFormats, agrees_with_its_twin)
 {
+    expect_twin(TestStack({std::get<PixelFormat>(GetParam()), 67, 65, 7}), Kind::Noisy);
+}
+
+TEST_P(AifFormats, without_noise_the_nearer_plane_counts_more)
+{
+    expect_twin(quiet_stack({std::get<PixelFormat>(GetParam()), 67, 65, 7}), Kind::Quiet);
+}
+
+void AifFormats::expect_twin(const TestStack &stack, Kind kind)
+{
     const auto [format, blend, style, holes] = GetParam();
-    const TestStack stack({format, 67, 65, 7});
     const std::vector<uint16_t> depth = test_depth(stack.shape, holes);
     const std::vector<uint16_t> taken_at = softened(depth, stack.shape);
     const std::vector<RowLayout> layout = packed_layout({format, 67, 65, 1});
@@ -123,7 +160,7 @@ TEST_P(AifFormats, agrees_with_its_twin)
                 /* Rounding; in tiles, positions are rounded to 1/256 plane too. */
                 const double of_8_bits = style == KernelStyle::Pixels ? 0.55 : 1.05;
                 const double tolerance = format == PixelFormat::Gray16 ? 8.0 : of_8_bits;
-                ASSERT_NEAR(found, twin_sample(planes, u, blend), tolerance)
+                ASSERT_NEAR(found, twin_sample(planes, u, blend, kind), tolerance)
                     << x << "," << y << " component " << c;
             }
 }
