@@ -15,6 +15,9 @@
  * A lens that does not move gives a full depth map all the same. Its confidence is next to nothing then, and
  * a warning says once that no plane is sharper than the others.
  *
+ * Where the picture stands still, depth of live sources is the mean of up to 16 stacks, so that it does not
+ * flicker (`steady`); what moves has the depth of its last stack alone.
+ *
  * The OpenCL device is shared with the neighbours, or given by the application: see
  * gst_context_new_dff_device(). While a first stack takes over a second, as it does when kernels have to be
  * compiled, progress messages with the code "kernels" say so. A live pipeline's latency does not count that.
@@ -253,6 +256,16 @@ static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer 
     return GST_FLOW_ERROR;
 }
 
+static bool is_live(GstDffDepth *self)
+{
+    gboolean live = FALSE;
+    GstQuery *query = gst_query_new_latency();
+    if (gst_pad_peer_query(self->sink, query))
+        gst_query_parse_latency(query, &live, nullptr, nullptr);
+    gst_query_unref(query);
+    return live;
+}
+
 static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
 {
     State &state = *self->state;
@@ -273,6 +286,7 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
         if (const auto settings = changed_settings(state))
             state.depth.set_settings(*settings);
         state.depth.set_stack(info);
+        state.depth.set_live(is_live(self));
         state.has_caps = true;
         return TRUE;
     } catch (const dff::EngineError &error) {
@@ -315,6 +329,7 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
         gst_event_unref(event);
         return TRUE;
     case GST_EVENT_FLUSH_STOP:
+        state.depth.forget();
         state.outputs.restart();
         break;
     case GST_EVENT_EOS:

@@ -22,6 +22,7 @@ enum : guint {
     Lambda,
     Iterations,
     Calibration,
+    Steady,
     End,
 };
 } // namespace property
@@ -44,6 +45,20 @@ GType gst_depth_method_get_type()
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstDepthMethod", values);
+    return type;
+}
+
+#define GST_TYPE_DEPTH_STEADINESS (gst_depth_steadiness_get_type())
+
+GType gst_depth_steadiness_get_type()
+{
+    static const GEnumValue values[] = {
+        {static_cast<int>(Steadiness::Auto), "Where the source is live", "auto"},
+        {static_cast<int>(Steadiness::Off), "Each stack is computed as if it were the only one", "off"},
+        {static_cast<int>(Steadiness::On), "Always", "on"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstDepthSteadiness", values);
     return type;
 }
 
@@ -127,6 +142,12 @@ void install_depth_properties(GObjectClass *object_class)
                             "distortion_coefficients, image_width, image_height), for whole pictures of any "
                             "size: the GstDepthMeta tells the intrinsics; empty: they are unknown",
                             "", ready));
+    install(
+        property::Steady,
+        g_param_spec_enum("steady", "Steady",
+                          "Keeps depth from flickering where the picture stands still: the mean of up to 16 "
+                          "stacks. What moves has the depth of the last stack alone",
+                          GST_TYPE_DEPTH_STEADINESS, static_cast<int>(defaults.steady), playing));
 }
 
 bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
@@ -171,6 +192,9 @@ bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
         return true;
     case property::Iterations:
         p.grid.iterations = g_value_get_uint(value);
+        return true;
+    case property::Steady:
+        settings.steady = static_cast<Steadiness>(g_value_get_enum(value));
         return true;
     case property::Calibration:
         settings.calibration = g_value_get_string(value) ? g_value_get_string(value) : "";
@@ -222,6 +246,9 @@ bool get_depth_property(const DepthSettings &settings, guint id, GValue *value)
         return true;
     case property::Iterations:
         g_value_set_uint(value, p.grid.iterations);
+        return true;
+    case property::Steady:
+        g_value_set_enum(value, static_cast<int>(settings.steady));
         return true;
     case property::Calibration:
         g_value_set_string(value, settings.calibration.c_str());

@@ -9,16 +9,20 @@
 
 namespace dff {
 
+/* Whether depth is kept steady where nothing moves; auto: of live sources. */
+enum class Steadiness { Auto, Off, On };
+
 /* What a user can set on dffdepth. */
 struct DepthSettings {
     DepthParameters parameters;
     GstDepthUnit unit = GST_DEPTH_UNIT_AUTO;
+    Steadiness steady = Steadiness::Auto;
     std::string device;
     std::string calibration; /* file, or empty */
 };
 
 /* The properties of dffdepth, from 1 to depth_properties_end - 1. */
-constexpr guint depth_properties_end = 15;
+constexpr guint depth_properties_end = 16;
 
 void install_depth_properties(GObjectClass *object_class);
 

@@ -5,6 +5,7 @@
 #include "gstcl/mapped_stack.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <system_error>
 
 namespace dff {
@@ -21,10 +22,23 @@ void set_intrinsics(GstDepthInfo &depth, const CameraCalibration &camera)
     std::copy(camera.distortion.begin(), camera.distortion.end(), depth.distortion);
 }
 
+/* Half of the way from plane to plane, at each depth. */
+DepthJumps jumps_of(const DepthEncoder &encoder)
+{
+    DepthJumps jumps{};
+    for (size_t i = 0; i < jumps.size(); i++) {
+        const auto z = encoder.decode(static_cast<uint16_t>(i * jumps.size() + jumps.size() / 2));
+        const int way = z ? std::abs(encoder.encode(*z + 0.25) - encoder.encode(*z - 0.25)) : 1;
+        jumps[i] = static_cast<uint16_t>(std::max(way, 1));
+    }
+    return jumps;
+}
+
 } // namespace
 
 void StackDepth::stop()
 {
+    steady_.reset();
     engine_.reset();
     coming_engine_ = {};
     device_.reset();
@@ -34,6 +48,7 @@ void StackDepth::set_stack(const GstFocalStackInfo &stack)
 {
     FocusEngine::require_room(*device_, stack_shape(stack), settings_.parameters);
     stack_ = stack;
+    steady_.reset();
     engine_.reset();
     coming_engine_ = {};
     try {
@@ -49,6 +64,7 @@ void StackDepth::set_stack(const GstFocalStackInfo &stack)
 void StackDepth::set_settings(const DepthSettings &settings)
 {
     settings_ = settings;
+    steady_.reset();
     engine_.reset();
     coming_engine_ = {};
 }
@@ -71,6 +87,7 @@ std::optional<std::string> StackDepth::take_positions(GstBuffer *stack)
         PlanePositions positions = plane_positions(stack_, stack);
         if (encoder_ && positions == positions_)
             return std::nullopt;
+        steady_.reset();
         encoder_ = make_encoder(settings_.unit, stack_.planes, positions);
         positions_ = std::move(positions);
         engine_->set_encoder(*encoder_);
@@ -82,6 +99,29 @@ std::optional<std::string> StackDepth::take_positions(GstBuffer *stack)
     } catch (const std::invalid_argument &error) {
         return error.what();
     }
+}
+
+bool StackDepth::compute(const StackView &view, const DepthOutputs &outputs)
+{
+    if (!engine_->compute(view, outputs))
+        return false;
+    keep_steady(view, outputs.depth);
+    return true;
+}
+
+void StackDepth::keep_steady(const StackView &view, const OutputPicture &depth)
+{
+    const bool is_wanted =
+        settings_.steady == Steadiness::On || (settings_.steady == Steadiness::Auto && is_live_);
+    if (!is_wanted || !depth.pixels) {
+        steady_.reset();
+        return;
+    }
+    if (!steady_) {
+        steady_.emplace(view.shape);
+        jumps_ = jumps_of(*encoder_);
+    }
+    steady_->steady(view, {depth.pixels, depth.stride}, jumps_);
 }
 
 GstDepthInfo StackDepth::facts(GstBuffer *stack, guint64 index) const

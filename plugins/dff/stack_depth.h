@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dffdepth_properties.h"
+#include "engine/steady_depth.h"
 #include "gstcl/depth_facts.h"
 #include "optics/camera_calibration.h"
 
@@ -47,11 +48,14 @@ public:
     /* The facts of the depth map of `stack`, the `index`-th of its stream; of planes as they lay last. */
     GstDepthInfo facts(GstBuffer *stack, guint64 index) const;
 
-    /* FocusEngine::compute() */
-    bool compute(const StackView &view, const DepthOutputs &outputs)
-    {
-        return engine_->compute(view, outputs);
-    }
+    /* FocusEngine::compute(), and the depth kept steady as the settings want it. */
+    bool compute(const StackView &view, const DepthOutputs &outputs);
+
+    /* Where the stacks come from, for Steadiness::Auto. */
+    void set_live(bool is_live) { is_live_ = is_live; }
+
+    /* The next stack is of another time. */
+    void forget() { steady_.reset(); }
 
     /* Of the last stack; empty before the first. */
     StageTimes times() const { return engine_ ? engine_->times() : StageTimes(); }
@@ -59,6 +63,8 @@ public:
     std::optional<float> residual() const { return engine_ ? engine_->residual() : std::nullopt; }
 
 private:
+    void keep_steady(const StackView &view, const OutputPicture &depth);
+
     std::shared_ptr<Device> device_;
     DepthSettings settings_;
     GstFocalStackInfo stack_{};
@@ -67,6 +73,9 @@ private:
     std::optional<DepthEncoder> encoder_;
     PlanePositions positions_;
     std::optional<CameraCalibration> calibration_;
+    std::optional<SteadyDepth> steady_; /* while it is wanted */
+    DepthJumps jumps_{};                /* of encoder_ */
+    bool is_live_ = false;
 };
 
 } // namespace dff

@@ -171,7 +171,7 @@ void StackDenoiser::background(size_t component, uint32_t z, uint32_t first_row,
             queue_.commands().enqueueReadBuffer(part.means, CL_TRUE, place * sizeof(cl_float),
                                                 means.size() * sizeof(cl_float), means.data());
             for (size_t i = 0; i < means.size(); i++) {
-                const auto value = static_cast<uint16_t>(means[i] + 0.5F);
+                const auto value = static_cast<uint16_t>(std::lround(means[i]));
                 std::memcpy(samples.data() + 2 * i, &value, sizeof value);
             }
             return;

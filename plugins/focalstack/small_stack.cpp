@@ -30,7 +30,8 @@ template <> struct SumOf<uint16_t> {
 template <typename Sample, int stride, int side>
 void take_means(const cv::Mat &picture, int channel, float scale, cv::Mat1f &means)
 {
-    std::vector<typename SumOf<Sample>::Type> columns(static_cast<size_t>(means.cols * side));
+    std::vector<typename SumOf<Sample>::Type> columns(static_cast<size_t>(means.cols) *
+                                                      static_cast<size_t>(side));
     for (int y = 0; y < means.rows; y++) {
         std::fill(columns.begin(), columns.end(), typename SumOf<Sample>::Type{0});
         for (int i = 0; i < side; i++) {

@@ -84,8 +84,7 @@ void compose(cv::Mat picture, const cv::Mat &moved, const cv::Mat &background, c
                 continue;
             for (int i = x * channels; i < (x + 1) * channels; i++) {
                 const float base = std::lerp(static_cast<float>(out[i]), static_cast<float>(still[i]), fill);
-                out[i] =
-                    static_cast<Sample>(std::lerp(base, static_cast<float>(following[i]), object) + 0.5F);
+                out[i] = cv::saturate_cast<Sample>(std::lerp(base, static_cast<float>(following[i]), object));
             }
         }
     }
