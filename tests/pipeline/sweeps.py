@@ -22,11 +22,11 @@ CMYK = base64.b64decode(
     'KKKKKKKKKKKKKKKKKKKKKKK//9k=')
 
 
-def write(path, pixels, orientation=1):
+def write(path, pixels, orientation=1, software='camera'):
     """An array of rows, columns and channels to a picture."""
     kind = {'u1': oiio.UINT8, 'u2': oiio.UINT16, 'f4': oiio.FLOAT}[pixels.dtype.str[1:]]
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], kind)
-    spec['Orientation'] = orientation
+    spec['Orientation'], spec['Software'] = orientation, software
     spec['oiio:UnassociatedAlpha'] = 1
     spec['CompressionQuality'] = 100
     output = oiio.ImageOutput.create(str(path))

@@ -119,6 +119,19 @@ class Results(Program):
         self.assertLess(np.abs(pixels[16:-16, 16:-16, 0] - (ramp[None] + sharp()[:, :, 0] * 8)[16:-16, 16:-16]).mean(), 40)
         self.assertGreater(len(np.unique(pixels)), 4096)
 
+    def test_16_bits_a_colour_stay(self):
+        """As far as the elements take them."""
+        ramp = np.linspace(10000, 50000, WIDTH * HEIGHT).reshape(HEIGHT, WIDTH, 1) * (1, 0.9, 0.5)
+        for number in range(PLANES):
+            write(self.photos / f'{number}.tif', np.round(ramp + plane(number) * 8).astype(np.uint16))
+        finished = self.stack(self.photos, '-o', self.out / 'a.tif', '--align', 'off', '--even', 'off')
+        spec, pixels = read(self.out / 'a.tif')
+        scale, slack = (257, 1.2) if 'is rounded' in finished.stderr else (1, 40)
+        self.assertEqual(pixels.dtype, np.uint8 if scale > 1 else np.uint16)
+        self.assertLess(np.abs(pixels.astype(float) - (ramp + sharp() * 8) / scale)[16:-16, 16:-16].mean(), slack)
+        if scale == 1:
+            self.assertGreater(len(np.unique(pixels[:, :, 0])), 4096)
+
     def test_exif_and_profile_are_kept(self):
         profile = struct.pack('>I4xI4s4s4s', 140, 0x04000000, b'mntr', b'RGB ', b'XYZ ').ljust(36, b'\0') + b'acsp' + b'mine' * 25
         segment = b'ICC_PROFILE\0\1\1' + profile
@@ -223,4 +236,4 @@ class Failing(Program):
 
 
 if __name__ == '__main__':
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

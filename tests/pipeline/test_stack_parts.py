@@ -8,11 +8,12 @@ import tempfile
 import unittest
 
 import numpy as np
+import OpenImageIO as oiio
 
 from slope import MANY, many_planes
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, alignment, engine, joining, memory, slabs, solve  # noqa: E402
+from dff_stack import Unusable, alignment, engine, joining, memory, results, slabs, solve  # noqa: E402
 from dff_stack.encoding import Encoding  # noqa: E402
 from dff_stack.progress import Progress  # noqa: E402
 
@@ -30,18 +31,18 @@ class Plans(unittest.TestCase):
                 self.assertTrue(all(before[1] - after[0] >= slabs.OVERLAP for before, after in zip(spans, spans[1:])), (count, size))
 
     def test_what_fits_is_computed_at_once(self):
-        plan = slabs.plan(30, 1920, 1080, RGB, 4 * GIB, 10)
+        plan = slabs.plan(30, 1920, 1080, RGB, 4 * GIB, 10, 8192)
         self.assertEqual((plan.slabs, len(plan.tiles)), ([(0, 30)], 1))
 
     def test_300_pictures_of_24_megapixels_in_6_gib(self):
-        plan = slabs.plan(300, 6000, 4000, RGB, 6 * GIB, 100)
+        plan = slabs.plan(300, 6000, 4000, RGB, 6 * GIB, 100, 8192)
         self.assertEqual(len(plan.tiles), 1)
         self.assertGreaterEqual(min(last - first for first, last in plan.slabs), slabs.FEWEST_PLANES)
 
     def test_large_pictures_are_tiles_that_overlap(self):
         for width, height in ((8256, 5504), (9504, 6336), (20000, 20000)):
-            plan = slabs.plan(20, width, height, RGB, 64 * GIB, 300)
-            self.assertTrue(all(max(tile.size) <= slabs.MOST_SIDE for tile in plan.tiles))
+            plan = slabs.plan(20, width, height, RGB, 64 * GIB, 300, 8192)
+            self.assertTrue(all(max(tile.size) <= 8192 for tile in plan.tiles))
             covered = np.zeros((height // 8, width // 8), int)
             for tile in plan.tiles:
                 covered[tile.y0 // 8:-(-tile.y1 // 8), tile.x0 // 8:-(-tile.x1 // 8)] += 1
@@ -50,7 +51,7 @@ class Plans(unittest.TestCase):
 
     def test_too_little_memory_is_told(self):
         with self.assertRaisesRegex(Unusable, '0.4 GiB .* 6000x4000'):
-            slabs.plan(300, 6000, 4000, RGB, 0.4 * GIB, 100)
+            slabs.plan(300, 6000, 4000, RGB, 0.4 * GIB, 100, 8192)
 
     def test_memory_is_what_the_group_may_have(self):
         with tempfile.TemporaryDirectory() as name:
@@ -157,6 +158,19 @@ class Warps(unittest.TestCase):
                     alignment.load(path, 1000, 500, 3)
 
 
+class Writing(unittest.TestCase):
+    def test_cameras_that_say_nothing_in_many_words(self):
+        """OpenImageIO aborts where it is to write an empty text."""
+        first = oiio.ImageSpec(64, 64, 3, oiio.UINT8)
+        for name in ('Artist', 'Copyright', 'Make', 'IPTC:Caption', 'Exif:UserComment', 'XResolution'):
+            first[name] = ''
+        with tempfile.TemporaryDirectory() as name:
+            for ending in ('jpg', 'tif', 'png', 'exr'):
+                with results.together() as files:
+                    results.write_picture(files, pathlib.Path(name, 'a.' + ending), np.zeros((64, 64, 3), np.uint8), first, 'a picture')
+                self.assertTrue(pathlib.Path(name, 'a.' + ending).exists())
+
+
 class Arrays:
     """Planes that are there already."""
 
@@ -211,4 +225,4 @@ class Seams(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

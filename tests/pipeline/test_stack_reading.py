@@ -136,6 +136,20 @@ class Reading(Sweeps):
         self.assertEqual(frames[0].dtype, np.uint16)
         self.assertGreater(frames[0][10:-10, 10:-10, :3].mean(), 1000)
 
+    def test_pictures_beside_raw_files_are_the_same_pictures(self):
+        for name in ('a', 'b'):
+            write_dng(self.photos / f'{name}.DNG', 200, 100)
+            write(self.photos / f'{name.upper()}.jpg', flat(9))
+        self.assertEqual(self.names(), ['a.DNG', 'b.DNG'])
+
+    def test_results_of_before_are_no_pictures(self):
+        for name in ('a', 'b', 'result'):
+            write(self.photos / f'{name}.tif', flat(9), **{'software': 'dff-stack 0.1.0'} if name == 'result' else {})
+        self.assertEqual(self.names(), ['a.tif', 'b.tif'])
+        self.assertIn('result.tif', self.said[0])
+        named = self.gather(self.photos, self.photos / 'result.tif')
+        self.assertEqual(named[-1].name, 'result.tif')
+
     def test_pages_are_pictures(self):
         write_pages(self.photos / 'sweep.tif', [flat(50 * number) for number in range(4)])
         write(self.photos / 'sweep2.tif', flat(220))
@@ -326,6 +340,34 @@ class Refusing(Sweeps):
         found = sweep.Sweep(self.gather(), False, False)
         look = found.look_through(0, Progress(quiet=True))
         self.assert_refused('same', act=lambda: sweep.without_duplicates(found, look, self.said.append))
+
+
+class BadPixels(Sweeps):
+    def write_sweep(self, spots):
+        random = np.random.default_rng(4)
+        for number in range(6):
+            pixels = texture(number % 4).repeat(3, 2)
+            for (row, column), value in spots.items():
+                pixels[row, column] = value
+            if number == 2:
+                pixels[50, 50] = 255  # what is bright in one picture only is something sharp
+            pixels[0, :6] = random.integers(0, 256, 6)[:, None]
+            write(self.photos / f'{number}.png', pixels)
+
+    def test_those_that_stand_out_everywhere_are_mended(self):
+        self.write_sweep({(20, 30): 255, (70, 60): 0})
+        found, frames = self.frames()
+        self.assertEqual([tuple(place) for place in found.bad_pixels], [(20, 30), (70, 60)])
+        self.assertEqual(frames[2][50, 50, 0], 255)
+        for frame in frames:
+            self.assertLess(abs(int(frame[20, 30, 0]) - 130), 75)
+            self.assertLess(abs(int(frame[70, 60, 0]) - 130), 75)
+
+    def test_few_pictures_tell_nothing(self):
+        self.write_sweep({(20, 30): 255})
+        for number in (3, 4, 5):
+            (self.photos / f'{number}.png').unlink()
+        self.assertEqual(len(self.frames()[0].bad_pixels), 0)
 
 
 class Shrinking(unittest.TestCase):

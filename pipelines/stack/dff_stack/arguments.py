@@ -122,6 +122,7 @@ def add_work(group):
     group.add_argument('--save-alignment', metavar='FILE', help='write how the pictures lie')
     group.add_argument('--use-alignment', metavar='FILE', help='take that of another sweep of the same rig')
     group.add_argument('--even', choices=('on', 'off'), default='on', help='give all pictures one brightness (%(default)s)')
+    group.add_argument('--bad-pixels', choices=('on', 'off'), default='on', help='mend those of the sensor (%(default)s)')
     group.add_argument('--memory', metavar='SIZE', type=amount, help='use at most this much, as 6G or 800M')
     group.add_argument('--preview', action='store_true', help='a quarter of the size, in seconds')
     group.add_argument('--quiet', action='store_true', help='say nothing but what is wrong')

@@ -33,11 +33,21 @@ def start():
         raise Unusable(f'GStreamer has no element {missing[0]}: install the plug-ins, or run this in `meson devenv -C build`')
 
 
-def has_deep_colour():
-    """Whether the elements take 16 bits a colour."""
-    caps = Gst.Caps.from_string('video/x-focal-stack,format=RGBA64_LE')
+def takes(fields):
+    """Whether the elements take stacks with such caps fields."""
+    caps = Gst.Caps.from_string(f'video/x-focal-stack,{fields}')
     return all(any(template.get_caps().can_intersect(caps) for template in Gst.ElementFactory.find(name).get_static_pad_templates())
                for name in ('focalstackalign', 'dffdepth', 'aifcompose'))
+
+
+def has_deep_colour():
+    """Whether the elements take 16 bits a colour."""
+    return takes('format=RGBA64_LE')
+
+
+def most_side():
+    """Pixels that a picture may have in each direction."""
+    return next((side for side in (16384, 8192) if takes(f'width={side},height={side}')), 8192)
 
 
 def stack_buffer(planes, count, encoding, width, height):

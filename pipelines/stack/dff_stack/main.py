@@ -62,9 +62,13 @@ def process(options, progress, tell):
     if found.loss:
         say(f'   {found.loss}')
     most = memory.to_use(options.memory)
-    first_plan = slabs.plan(found.count, *found.size, found.encoding, most, 0)
+    first_plan = slabs.plan(found.count, *found.size, found.encoding, most, 0, engine.most_side())
     progress.begin(f'Reading {found.count} pictures of {pictures[0].size}', found.count)
     look = found.look_through(first_plan.slabs[0][1], progress)
+    if options.bad_pixels == 'off':
+        found.bad_pixels = ()
+    elif len(found.bad_pixels):
+        say(f'   {len(found.bad_pixels)} pixels of the sensor are always bright or dark: their neighbours take their place')
     sweep.without_duplicates(found, look, say)
     order.tell_of_doubts(found.pictures, look.thumbnails, say)
     if options.step:

@@ -45,6 +45,11 @@ class Picture:
     def size(self):
         return f'{self.width}x{self.height}'
 
+    @property
+    def is_result(self):
+        """Whether it was made by this program."""
+        return self.spec.get_string_attribute('Software').startswith('dff-stack ')
+
     def __str__(self):
         kind = 'half or float' if self.is_float else f'{self.bits} bits'
         return f'{self.name}  ({self.size}, {"grey" if self.grey else "colour"}, {kind})'
@@ -110,13 +115,20 @@ def pages_of(path):
     return [Picture(path, spec, page, len(specs)) for page, spec in specs]
 
 
+def files_in(folder):
+    """As people count. Hidden files are left by file managers; beside raw files cameras write JPEG pictures of the same name."""
+    files = sorted((file for file in folder.iterdir() if file.suffix.lower() in ENDINGS and not file.name.startswith('.')),
+                   key=counting_order)
+    raw = {file.stem.casefold() for file in files if file.suffix.lower() in RAW_ENDINGS}
+    return [file for file in files if file.suffix.lower() in RAW_ENDINGS or file.stem.casefold() not in raw]
+
+
 def files_of(paths):
-    """The files named, and those of the folders named as people count; hidden ones are left by file managers."""
+    """The files that are named, and those of the folders that are named."""
     files = []
     for path in map(pathlib.Path, paths):
         if path.is_dir():
-            files += sorted((file for file in path.iterdir()
-                             if file.suffix.lower() in ENDINGS and not file.name.startswith('.')), key=counting_order)
+            files += files_in(path)
         elif path.exists() or path.is_symlink():
             files.append(path)
         else:

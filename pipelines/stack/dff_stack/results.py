@@ -4,6 +4,7 @@
 import contextlib
 import os
 import pathlib
+import re
 
 import numpy as np
 import OpenImageIO as oiio
@@ -78,6 +79,10 @@ def picture_spec(first, pixels, description):
     spec = oiio.ImageSpec(first)
     for name in OF_THE_FILE:
         spec.erase_attribute(name)
+    texts = [attribute.name for attribute in first.extra_attribs if attribute.type == oiio.TypeString]
+    for name in texts:
+        if not first.get_string_attribute(name):  # at which OpenImageIO would abort
+            spec.erase_attribute(re.escape(name))
     height, width, channels = pixels.shape
     spec.x = spec.y = spec.full_x = spec.full_y = 0
     spec.width, spec.height, spec.full_width, spec.full_height = width, height, width, height

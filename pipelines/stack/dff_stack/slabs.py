@@ -5,7 +5,7 @@ import dataclasses
 
 from dff_stack import Unusable
 
-MOST_PLANES, MOST_SIDE = 64, 8192
+MOST_PLANES = 64
 FEWEST_PLANES = 8       # of a slab, where the memory allows it; below that tiles are made smaller instead
 OVERLAP = 4             # planes that two slabs share
 BLEND = 64              # pixels over which two tiles are blended
@@ -76,15 +76,15 @@ def tiles_of(width, height, columns, rows, margin):
     return [Tile(x0, y0, x1, y1) for y0, y1 in edges(height, rows, margin) for x0, x1 in edges(width, columns, margin)]
 
 
-def plan(count, width, height, encoding, memory, shift):
-    """`shift`: pixels that planes are moved at most, which tiles must have around them."""
+def plan(count, width, height, encoding, memory, shift, most_side):
+    """`shift`: pixels that planes are moved at most, which tiles must have around them. `most_side`: pixels that the elements take."""
     margin = MARGIN + BLEND // 2 + int(shift)
-    columns, rows = -(-width // MOST_SIDE), -(-height // MOST_SIDE)
+    columns, rows = -(-width // most_side), -(-height // most_side)
     while True:
         if columns > 1 or rows > 1:
-            while max(x1 - x0 for x0, x1 in edges(width, columns, margin)) > MOST_SIDE:
+            while max(x1 - x0 for x0, x1 in edges(width, columns, margin)) > most_side:
                 columns += 1
-            while max(y1 - y0 for y0, y1 in edges(height, rows, margin)) > MOST_SIDE:
+            while max(y1 - y0 for y0, y1 in edges(height, rows, margin)) > most_side:
                 rows += 1
         tiles = tiles_of(width, height, columns, rows, margin)
         pixels = max(tile.size[0] * tile.size[1] for tile in tiles)

@@ -90,7 +90,7 @@ def solve_slab(source, span, kept, warps, plan, work):
 
 def plan_of(source, warps, work):
     shift = alignment.farthest(warps, *source.size) if warps else 0
-    return slabs.plan(source.count, *source.size, source.encoding, work.memory, shift)
+    return slabs.plan(source.count, *source.size, source.encoding, work.memory, shift, engine.most_side())
 
 
 def solve(source, warps, work, level=1):

@@ -2,10 +2,12 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 """The pictures of a sweep: gathered, looked through once, and read again when their planes are due."""
 import dataclasses
+import pathlib
 
 import numpy as np
 
 from dff_stack import Unusable, depths, encoding, listed, order, pictures
+from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
 THUMBNAIL = 32    # in which they are compared
@@ -15,8 +17,12 @@ PREVIEW = 4       # times smaller
 def gather(paths, chosen_order, far_first, say):
     """The pictures, nearest first, and the size of a pixel in micrometres where a file knows it."""
     found, pixel_um = [], None
+    named = {pathlib.Path(path) for path in paths}
     for path in pictures.files_of(paths):
         pages = pictures.pages_of(path)
+        if pages[0].is_result and path not in named:
+            say(f'   {path.name} is a result of dff-stack, and left out')
+            continue
         if len(pages) > 1:
             pages, own = depths.place_pages(pages)
             pixel_um = pixel_um or own
@@ -51,6 +57,7 @@ class Sweep:
         self.shrink = PREVIEW if preview else 1
         self.encoding, self.loss = encoding.encoding_of(found, has_deep_colour)
         self.kept = {}
+        self.bad_pixels = ()
 
     @property
     def count(self):
@@ -70,6 +77,7 @@ class Sweep:
         frame = self.kept.pop(picture, None)
         if frame is None:
             frame = self.encoding.encode(self.pixels(picture))
+        frame = repair(frame, self.bad_pixels)
         if keep:
             self.kept[picture] = frame
         return frame
@@ -77,10 +85,12 @@ class Sweep:
     def look_through(self, keep, progress):
         """Reads every picture. The first `keep` frames stay in memory, since they are wanted first."""
         look = Look([], 1, [], 1e-9)
+        bad = BadPixels(self.count if self.shrink == 1 and not self.encoding.is_float else 0)
         for number, picture in enumerate(self.pictures):
             pixels = self.pixels(picture)
             look.factor = max(1, max(pixels.shape[:2]) // SMALL)
             luma = encoding.shrunk_luma(pixels, SMALL)
+            bad.look_at(number, pixels, self.encoding.largest)
             if self.encoding.is_float:
                 luma = np.nan_to_num(luma, posinf=0.0)
                 look.white = max(look.white, finite_maximum(pixels))
@@ -93,6 +103,7 @@ class Sweep:
         if self.encoding.is_float:
             self.encoding = dataclasses.replace(self.encoding, white=look.white)
             look.lumas = [np.round(luma * (255 / np.sqrt(look.white))).clip(0, 255).astype(np.uint8) for luma in look.lumas]
+        self.bad_pixels = bad.found()
         look.thumbnails = [encoding.shrunk_luma(luma[:, :, None], THUMBNAIL) for luma in look.lumas]
         return look
 
