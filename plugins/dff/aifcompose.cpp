@@ -22,8 +22,8 @@
 
 #include "aif_picture.h"
 #include "common/running_time.h"
-#include "engine_caps.h"
 #include "gstcl/depth_composer.h"
+#include "gstcl/engine_caps.h"
 #include "number_matching.h"
 
 #include <gst/dff/dff.h>

@@ -13,6 +13,9 @@
  * `lightfield` gives pictures for a light-field display, where lightfieldcompose is installed. The request
  * pads `planes` and `stacks` give what the depth is computed from, to be recorded meanwhile.
  *
+ * `denoise-frames` and `local-motion` are those of focalstackdenoise, through which what is computed goes;
+ * the pad `stacks` gives the stacks as they came.
+ *
  * The properties of dffdepth and aifcompose are properties of the bin as well; all others are reached as
  * child properties: `mux::on-missing=repeat`, `source::...`, `lightfield::layout=quilt`. `stats` holds the
  * `stats` of all its parts, those of the source included.
@@ -46,7 +49,13 @@ GST_DEBUG_CATEGORY(dff_camera_bin_debug);
 
 namespace {
 
-enum Property : guint { PropertySource = 1, PropertyStats, FIRST_FORWARDED };
+enum Property : guint {
+    PropertySource = 1,
+    PropertyStats,
+    PropertyDenoiseFrames,
+    PropertyLocalMotion,
+    FIRST_FORWARDED
+};
 
 /* A sink of planes stops at its first frame until the first stack is whole and everything has prerolled: two
  * of the longest sweeps. Stacks and pictures are large: two are enough to keep both sides of a branch busy.
@@ -56,8 +65,9 @@ constexpr guint pictures_in_wait = 2;
 
 /* The parts of the graph. The bin owns the elements; one that is not installed is nullptr.
  *
- *   source ! planes ! mux ! stacks ! (depth_valve) ! dffdepth ! depths ! queue ! pad depth
- *   stacks ! (stack_valve) ! queue ! aif.stack,  depths ! (aif_valve) ! queue ! aif.depth
+ *   source ! planes ! mux ! stacks ! (depth_valve) ! queue ! denoise ! denoised
+ *   denoised ! queue ! dffdepth ! depths ! queue ! pad depth
+ *   denoised ! (stack_valve) ! queue ! aif.stack,  depths ! (aif_valve) ! queue ! aif.depth
  *   aifcompose ! pictures ! queue ! pad aif
  *
  * and, when their pads are requested,
@@ -76,6 +86,8 @@ struct State {
     GstElement *mux = nullptr;
     GstElement *stacks = nullptr;
     GstElement *depth_valve = nullptr;
+    GstElement *denoise = nullptr;
+    GstElement *denoised = nullptr;
     GstElement *stack_valve = nullptr;
     GstElement *aif_valve = nullptr;
     GstElement *dffdepth = nullptr;
@@ -176,13 +188,15 @@ static GstPad *add_output(GstDffCameraBin *self, GstStaticPadTemplate *static_te
 static void build_graph(GstDffCameraBin *self)
 {
     State &state = *self->state;
-    GstElement *stack_queue = add_queue(self), *aif_stack_queue = add_queue(self),
-               *aif_depth_queue = add_queue(self), *depth_queue = add_queue(self),
-               *aif_queue = add_queue(self);
+    GstElement *denoise_queue = add_queue(self), *stack_queue = add_queue(self),
+               *aif_stack_queue = add_queue(self), *aif_depth_queue = add_queue(self),
+               *depth_queue = add_queue(self), *aif_queue = add_queue(self);
     state.planes = add_tee(self, "plane-tee"); /* a pipeline's own elements may be called planes */
     state.mux = add(self, "focalstackmux", "mux");
     state.stacks = add_tee(self, "stacks");
     state.depth_valve = add_valve(self, "depth-valve");
+    state.denoise = add(self, "focalstackdenoise", "denoise");
+    state.denoised = add_tee(self, "denoised");
     state.stack_valve = add_valve(self, "stack-valve");
     state.aif_valve = add_valve(self, "aif-valve");
     state.dffdepth = add(self, "dffdepth", "dffdepth");
@@ -194,9 +208,11 @@ static void build_graph(GstDffCameraBin *self)
 
     gst_element_link_pads(state.planes, "src_%u", state.mux, "sink"); /* not one of a plane */
     gst_element_link_pads(state.mux, "src", state.stacks, "sink");
-    gst_element_link_many(state.stacks, state.depth_valve, stack_queue, state.dffdepth, state.depths,
-                          depth_queue, nullptr);
-    gst_element_link_many(state.stacks, state.stack_valve, aif_stack_queue, nullptr);
+    g_object_set(state.denoise, "frames", 1U, nullptr); /* leaves the stacks as they are */
+    gst_element_link_many(state.stacks, state.depth_valve, denoise_queue, state.denoise, state.denoised,
+                          nullptr);
+    gst_element_link_many(state.denoised, stack_queue, state.dffdepth, state.depths, depth_queue, nullptr);
+    gst_element_link_many(state.denoised, state.stack_valve, aif_stack_queue, nullptr);
     gst_element_link_many(state.depths, state.aif_valve, aif_depth_queue, nullptr);
     gst_element_link_pads(aif_stack_queue, "src", state.aifcompose, "stack");
     gst_element_link_pads(aif_depth_queue, "src", state.aifcompose, "depth");
@@ -368,12 +384,31 @@ static GstStructure *create_stats(GstDffCameraBin *self)
     return all;
 }
 
+/* What a property of the bin is called by focalstackdenoise; nullptr if it is none of it. */
+static const char *denoiser_property(guint id)
+{
+    if (id == PropertyDenoiseFrames)
+        return "frames";
+    return id == PropertyLocalMotion ? "local-motion" : nullptr;
+}
+
+/* The parts whose properties are the bin's. */
+static std::vector<GstElement *> forwarded_to(const State &state)
+{
+    return {state.dffdepth, state.aifcompose};
+}
+
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
     auto *self = GST_DFF_CAMERA_BIN(object);
     State &state = *self->state;
+    if (const char *name = denoiser_property(id)) {
+        if (state.denoise)
+            g_object_set_property(G_OBJECT(state.denoise), name, value);
+        return;
+    }
     if (id != PropertySource) {
-        dff::set_forwarded_property({state.dffdepth, state.aifcompose}, value, spec);
+        dff::set_forwarded_property(forwarded_to(state), value, spec);
         return;
     }
     if (GST_STATE(self) > GST_STATE_READY) {
@@ -393,8 +428,13 @@ static void get_property(GObject *object, guint id, GValue *value, GParamSpec *s
         g_value_take_boxed(value, create_stats(self));
         return;
     }
+    if (const char *name = denoiser_property(id)) {
+        if (self->state->denoise)
+            g_object_get_property(G_OBJECT(self->state->denoise), name, value);
+        return;
+    }
     if (id != PropertySource) {
-        dff::get_forwarded_property({self->state->dffdepth, self->state->aifcompose}, value, spec);
+        dff::get_forwarded_property(forwarded_to(*self->state), value, spec);
         return;
     }
     GST_OBJECT_LOCK(self);
@@ -460,6 +500,19 @@ static void gst_dff_camera_bin_class_init(GstDffCameraBinClass *klass)
             "The stats of the parts that have some, each a structure by the name of its element: mux, "
             "dffdepth, aifcompose, and those of the source",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+    const auto playing =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+    g_object_class_install_property(
+        object_class, PropertyDenoiseFrames,
+        g_param_spec_uint("denoise-frames", "Denoise frames",
+                          "Sweeps that are averaged at most where nothing moves, for less noise in depth and "
+                          "pictures; 1 leaves the stacks as they are",
+                          1, 255, 1, playing));
+    g_object_class_install_property(
+        object_class, PropertyLocalMotion,
+        g_param_spec_boolean("local-motion", "Local motion",
+                             "Shows what moves during a sweep in all planes where it is in the middle of it",
+                             FALSE, playing));
     dff::install_forwarded_properties(object_class, FIRST_FORWARDED,
                                       {GST_TYPE_DFF_DEPTH, GST_TYPE_AIF_COMPOSE});
 

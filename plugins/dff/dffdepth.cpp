@@ -30,9 +30,9 @@
 
 #include "depth_statistics.h"
 #include "dffdepth_properties.h"
-#include "engine_caps.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
+#include "gstcl/engine_caps.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
 #include "gstcl/start_progress.h"

@@ -34,6 +34,7 @@
 #include "focalstack/sweep_follower.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
+#include "gstcl/engine_caps.h"
 #include "gstcl/engine_message.h"
 #include "gstcl/mapped_stack.h"
 #include "gstcl/start_progress.h"
@@ -48,12 +49,6 @@ GST_DEBUG_CATEGORY_STATIC(focalstackdenoise_debug);
 #define GST_CAT_DEFAULT focalstackdenoise_debug
 
 namespace {
-
-/* Less than a tile is no picture to look for motion in; more than 8192 none of the engine's. */
-#define STACK_CAPS                                                                                           \
-    GST_FOCAL_STACK_CAPS_NAME ", format = (string) " GST_FOCAL_STACK_FORMATS                                 \
-                              ", width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"                    \
-                              ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"
 
 enum Property : guint {
     PropertyFrames = 1,
@@ -85,9 +80,9 @@ struct FocalStackDenoiseState {
 };
 
 GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(STACK_CAPS));
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENGINE_STACK_CAPS));
 GstStaticPadTemplate source_template =
-    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(STACK_CAPS));
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENGINE_STACK_CAPS));
 
 } // namespace
 
@@ -245,6 +240,10 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
 
     if (!gst_focal_stack_info_from_caps(&info, caps))
         return FALSE;
+    if (const auto problem = dff::wrong_size(info.frame)) {
+        GST_ELEMENT_ERROR(base, STREAM, FORMAT, ("%s", problem->c_str()), (nullptr));
+        return FALSE;
+    }
     state.info = info;
     state.denoiser.reset();
     state.follower.reset();
@@ -338,9 +337,8 @@ GstStructure *statistics(FocalStackDenoiseState &state)
     return stats;
 }
 
-void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
+bool take_property(FocalStackDenoiseState &state, guint id, const GValue *value)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
     const std::lock_guard lock(state.mutex);
     if (id == PropertyFrames)
         state.parameters.frames = g_value_get_uint(value);
@@ -351,7 +349,23 @@ void set_property(GObject *object, guint id, const GValue *value, GParamSpec *sp
     else if (id == PropertyDevice)
         state.device_wish = g_value_get_string(value) ? g_value_get_string(value) : "";
     else
+        return false;
+    return true;
+}
+
+/* A single sweep without motion is passed on without a look at it. */
+bool has_nothing_to_do(FocalStackDenoiseState &state)
+{
+    const std::lock_guard lock(state.mutex);
+    return state.parameters.frames == 1 && !state.local_motion;
+}
+
+void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
+{
+    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
+    if (!take_property(state, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+    gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(object), has_nothing_to_do(state));
 }
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
@@ -414,10 +428,10 @@ void install_properties(GObjectClass *object_class)
     /**
      * GstFocalStackDenoise:stats:
      *
-     * "stacks" (uint64) were denoised; in the last one, "sweeps" (double) were averaged, as a mean over the
-     * picture, and "moved" (double, 0 to 1) is the part of it in which local-motion saw anything. "noise" is
-     * an array of 16 doubles: the standard deviation of the noise of a single frame at 16 brightnesses from
-     * black to white, in units of which white has 256.
+     * "stacks" (uint64) were denoised, or followed; in the last one, "sweeps" (double) were averaged, as a
+     * mean over the picture, and "moved" (double, 0 to 1) is the part of it in which local-motion saw
+     * anything. "noise" is an array of 16 doubles: the standard deviation of the noise of a single frame at
+     * 16 brightnesses from black to white, in units of which white has 256.
      */
     g_object_class_install_property(
         object_class, PropertyStats,
@@ -456,6 +470,7 @@ static void gst_focal_stack_denoise_class_init(GstFocalStackDenoiseClass *klass)
     base_class->sink_event = sink_event;
     base_class->query = query;
     base_class->transform_ip = transform_ip;
+    base_class->transform_ip_on_passthrough = FALSE;
 }
 
 static void gst_focal_stack_denoise_init(GstFocalStackDenoise *self)

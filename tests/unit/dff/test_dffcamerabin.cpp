@@ -286,6 +286,17 @@ TEST(DffCameraBin, stats_are_those_of_all_its_parts)
     gst_structure_free(stats);
 }
 
+TEST(DffCameraBin, stacks_are_denoised_where_that_is_wanted)
+{
+    for (const auto &[settings, denoised] :
+         {std::tuple("", 0u), std::tuple(" denoise-frames=4", 3u), std::tuple(" local-motion=true", 3u)}) {
+        TestPipeline pipeline(camera(planes, settings) + depth_out);
+        pipeline.play();
+        EXPECT_EQ(collect(pipeline, "depth").frames.size(), 3u);
+        EXPECT_EQ(stat(pipeline, "denoise", "stacks"), denoised) << settings;
+    }
+}
+
 TEST(DffCameraBin, planes_and_stacks_can_be_taken_and_let_go_while_it_runs)
 {
     TestPipeline pipeline(camera("lenssweeptestsrc planes=6 is-live=true rate=10 ! "
