@@ -12,7 +12,7 @@ namespace dff {
 namespace {
 
 /* Frames until the property must read what was set: many times the delay of any camera. */
-constexpr unsigned longest_way = 300;
+constexpr unsigned longest_way = 120;
 
 /* Throws std::invalid_argument unless every position is one that the property takes, and another than the one
  * before. */

@@ -16,6 +16,7 @@ devices() {
     modprobe -a i2c-dev configfs rig_i2c gpio-sim-rig
     modprobe vivid n_devs=1 node_types=0x1 num_inputs=1 input_types=0x00
     modprobe rig_focus
+    modprobe vimc
     mount -t configfs config /sys/kernel/config
     local bank=/sys/kernel/config/gpio-sim/rig/bank
     mkdir -p $bank/line0 $bank/line1

@@ -4,7 +4,7 @@
 #
 # run.sh CACHE_DIR COMMAND...: boots a throw-away virtual machine and runs the command, by its absolute path, in it, as
 # root. The machine sees this one's files, but writes to them go to its memory. It has a V4L2 camera that can be focused
-# (vivid), the GPIO lines RUN and SYNC (gpio-sim), and an I2C bus with the registers of the sequencer and the lens driver.
+# (vivid), one whose lens is a sub-device (vimc), the GPIO lines RUN and SYNC (gpio-sim), and an I2C bus with the registers of the sequencer and the lens driver.
 # The variables of GStreamer and of this project go with it. Needs no /dev/kvm, and installs no kernel: CACHE_DIR keeps what
 # was fetched and built. Ends with the command's status, with 77 and a reason where it cannot run.
 set -euo pipefail
@@ -52,8 +52,10 @@ build_modules() {
     mkdir -p "$cache/modules" && cd "$cache/modules" || return
     [ ! -f .built ] || [ -n "$(find "$here/modules" -newer .built)" ] || return 0
     cp "$here"/modules/* . &&
-        tar -xJf "$source" --strip-components=3 --occurrence=1 \
-            "$(basename "$source" .tar.xz)"/{drivers/gpio/{gpio-sim.c,gpiolib.h},kernel/irq/irq_sim.c} || return
+        tar -xJf "$source" --transform 's,.*/,,' --occurrence=1 \
+            "$(basename "$source" .tar.xz)"/{drivers/gpio/{gpio-sim.c,gpiolib.h},kernel/irq/irq_sim.c} \
+            "$(basename "$source" .tar.xz)"/drivers/media/test-drivers/vimc/vimc-{capture,common,core,debayer,lens,scaler,sensor,streamer}.c \
+            "$(basename "$source" .tar.xz)"/drivers/media/test-drivers/vimc/vimc-{common,streamer}.h || return
     # Out of the kernel's tree, irq_to_desc() is not to be had.
     sed -i 's/handle_simple_irq(irq_to_desc(\(.*\)));/generic_handle_irq_safe(\1);/' irq_sim.c
     make -C "/lib/modules/$release/build" M="$PWD" modules >build.log 2>&1 || { tail -n 20 build.log; return 1; }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lens/found_lenses.h"
 #include "lens/fpga_lens.h"
 #include "lens/linux_i2c_bus.h"
 #include "lens/open_lens.h"
@@ -28,6 +29,17 @@ std::unique_ptr<dff::Lens> open(const std::string &uri)
     auto lens = dff::open_lens(dff::LensUri::parse(uri), {});
     rig::empty_i2c_log();
     return lens;
+}
+
+/* What v4l2-ctl says of them. */
+std::string controls_of(const std::string &device, const std::string &names)
+{
+    FILE *tool = popen(("v4l2-ctl -d " + device + " -C " + names).c_str(), "r");
+    std::string text;
+    for (int c = fgetc(tool); c != EOF; c = fgetc(tool))
+        text += static_cast<char>(c);
+    pclose(tool);
+    return text;
 }
 
 } // namespace
@@ -112,12 +124,7 @@ TEST(LensDriver, transfers_that_keep_failing_end_in_an_error_and_a_lens_asleep)
 TEST(VideoLens, is_moved_over_its_range_after_autofocus_is_switched_off_and_gives_it_back)
 {
     const auto autofocus = [] {
-        FILE *tool = popen("v4l2-ctl -d /dev/video0 -C focus_automatic_continuous,focus_absolute", "r");
-        std::string text;
-        for (int c = fgetc(tool); c != EOF; c = fgetc(tool))
-            text += static_cast<char>(c);
-        pclose(tool);
-        return text;
+        return controls_of("/dev/video0", "focus_automatic_continuous,focus_absolute");
     };
     EXPECT_NE(autofocus().find("continuous: 1"), std::string::npos) << autofocus();
     {
@@ -155,6 +162,25 @@ TEST(VideoLens, points_of_a_profile_say_where_it_goes)
     EXPECT_THROW(other->prepare({dff::SweepPlan::even(3, 2.0, 0.0)}), std::invalid_argument);
 }
 
+/* The kernel's simulated camera vimc has a lens as real sensors have: a sub-device of its own. */
+TEST(SubdeviceLens, is_found_and_moved)
+{
+    std::string device;
+    for (const dff::FoundLens &lens : dff::find_lenses(dff::this_machine()))
+        if (lens.kind == dff::FoundLens::Kind::Subdevice)
+            device = lens.device;
+    ASSERT_NE(device.find("/dev/v4l-subdev"), std::string::npos);
+    const auto lens = dff::open_lens(dff::LensUri::parse("v4l2:" + device), {});
+    lens->prepare({dff::SweepPlan::even(3, 4.0, 0.0)});
+    EXPECT_EQ(lens->code(0), 1023);
+    EXPECT_EQ(lens->code(2), 0);
+    lens->start();
+    dynamic_cast<dff::SteppedLens &>(*lens).move_to(0);
+    const auto told = controls_of(device, "focus_absolute");
+    EXPECT_NE(told.find("absolute: 1023"), std::string::npos) << told;
+    lens->stop();
+}
+
 TEST(EveryLens, two_hundred_starts_leave_no_file_open)
 {
     const auto open_files = [] {
@@ -166,7 +192,7 @@ TEST(EveryLens, two_hundred_starts_leave_no_file_open)
         const auto before = open_files();
         for (int cycle = 0; cycle < 200; cycle++) {
             const auto lens = dff::open_lens(dff::LensUri::parse(uri), {});
-            lens->prepare({dff::SweepPlan::even(3, 2.0, 0.0), 6400us, 6000us});
+            lens->prepare({dff::SweepPlan::even(2, 2.0, 0.0), 6400us, 6000us});
             lens->start();
             if (auto *stepped = dynamic_cast<dff::SteppedLens *>(lens.get()))
                 stepped->move_to(1);
