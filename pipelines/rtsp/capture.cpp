@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "capture.h"
 
+#include <algorithm>
+
 namespace dff {
 
 namespace {

@@ -39,6 +39,7 @@
 #include "gstcl/mapped_stack.h"
 #include "gstcl/start_progress.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gst/dff/dff.h>
 #include <mutex>

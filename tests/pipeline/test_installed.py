@@ -111,9 +111,11 @@ class Installed(unittest.TestCase):
                     self.assertTrue(os.access(path, os.X_OK), path)
 
     def test_every_plug_in_is_installed_and_loads(self):
+        environment = {name: value for name, value in self.environment.items() if name != 'LD_LIBRARY_PATH'}
+        run(next(pathlib.Path(self.folder.name).rglob('bin/dff-rtsp-server')), '--help', env=environment)
         for element in ('lenssweeptestsrc', 'focalstackmux', 'dffdepth', 'aifcompose', 'dffcamerabin', 'depthcolorize', 'dffmetapay', 'depthexrenc',
                         'lightfieldcompose'):
-            run('gst-inspect-1.0', element, env=self.environment)
+            run('gst-inspect-1.0', element, env=environment)
 
 
 if __name__ == '__main__':

@@ -4,6 +4,7 @@
 #include "receiver.h"
 #include "server_process.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <gst/dff/dff.h>

@@ -6,6 +6,8 @@
 #include "interruptible_sleep.h"
 #include "sweep_table.h"
 
+#include <algorithm>
+
 namespace dff {
 
 using max14574::Register;

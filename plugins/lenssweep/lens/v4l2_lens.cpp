@@ -4,6 +4,7 @@
 
 #include "uncalibrated_positions.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <fcntl.h>

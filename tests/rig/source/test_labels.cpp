@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "proofs.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace dff;

@@ -3,6 +3,7 @@
 #include "rig.h"
 #include "support.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <gst/video/video.h>

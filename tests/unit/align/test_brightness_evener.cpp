@@ -4,6 +4,7 @@
 
 #include "shaken_stack.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 

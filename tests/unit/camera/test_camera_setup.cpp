@@ -6,6 +6,7 @@
 #include "lenssweep/camera/link_load.h"
 #include "lenssweep/camera/pixel_layout.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
 #include <stdexcept>

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_pipeline.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "gstcl/device_context.h"
 #include "test_pipeline.h"
 
+#include <algorithm>
 #include <atomic>
 #include <dlfcn.h>
 #include <gtest/gtest.h>

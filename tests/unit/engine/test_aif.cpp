@@ -3,6 +3,7 @@
 #include "engine/aif_composer.h"
 #include "test_stack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 

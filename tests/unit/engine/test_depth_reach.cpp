@@ -4,6 +4,7 @@
 #include "engine/depth_reach.h"
 #include "twin_volume.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace dff;

@@ -4,6 +4,7 @@
 #include "engine/reference_image.h"
 #include "twin_focus.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace dff;

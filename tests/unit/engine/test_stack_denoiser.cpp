@@ -3,6 +3,7 @@
 #include "engine/stack_denoiser.h"
 #include "test_stack.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/sweep_follower.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>

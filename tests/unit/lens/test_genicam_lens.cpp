@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "genicam_lens.h"
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <fstream>

@@ -5,6 +5,7 @@
 #include "engine/scene/scene_slant.h"
 #include "engine/scene/swept_camera.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include "optics/depth_scale.h"
 #include "twin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>

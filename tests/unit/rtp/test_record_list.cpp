@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "rtp/record_list.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <stdexcept>
 

@@ -5,6 +5,7 @@
 #include "engine/scene/swept_camera.h"
 #include "optics/depth_scale.h"
 
+#include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>

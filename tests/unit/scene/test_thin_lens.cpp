@@ -4,6 +4,7 @@
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/thin_lens_renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
