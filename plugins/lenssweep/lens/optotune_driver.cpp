@@ -2,7 +2,6 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optotune_driver.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -47,16 +46,13 @@ Bytes with_checksum(Bytes bytes)
     return bytes;
 }
 
-/* The answer without its checksum and end of line, if those are right; else nothing. */
-Bytes unwrapped(const Bytes &bytes, std::size_t size)
+/* Whether these are so many bytes with their checksum and an end of line. */
+bool is_answer(const Bytes &bytes, std::size_t size)
 {
     if (bytes.size() != size + 4 || bytes[size + 2] != '\r' || bytes[size + 3] != '\n')
-        return {};
-    Bytes answer(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    return std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size) + 2,
-                      with_checksum(answer).begin())
-               ? answer
-               : Bytes{};
+        return false;
+    const std::uint16_t crc = crc16_ibm(std::span(bytes).first(size));
+    return bytes[size] == (crc & 0xff) && bytes[size + 1] == crc >> 8;
 }
 
 } // namespace
@@ -96,14 +92,15 @@ void OptotuneDriver::greet()
         "there are");
 }
 
-/* What is asked twice is right even if the first answer came late: all of them are of the present. */
+/* With checksum and end of line. What is asked twice is right even if the first answer came late: callers
+ * look whether it is of what they set. */
 OptotuneDriver::Bytes OptotuneDriver::ask(const Bytes &question, std::size_t answer_size)
 {
     for (int attempt = 0; attempt < tries; ++attempt) {
         port_.forget_input();
         port_.write(with_checksum(question));
-        Bytes answer = unwrapped(port_.read(answer_size + 4, patience), answer_size);
-        if (!answer.empty() && answer.front() == question.front())
+        Bytes answer = port_.read(answer_size + 4, patience);
+        if (is_answer(answer, answer_size) && answer.front() == question.front())
             return answer;
     }
     throw LensError("the Optotune Lens Driver on " + port_.device() +
