@@ -149,10 +149,10 @@ bool GenicamLens::needs(const std::string &command, const std::string &status)
 /* Connects, then initialises what says that it is not. */
 void GenicamLens::start()
 {
-    for (const auto &[command, status] : preparations) {
-        if (needs(command, status)) {
-            access([&] { camera_.execute(command); });
-            wait_ready(status, {});
+    for (const Preparation &step : preparations) {
+        if (needs(step.command, step.status)) {
+            access([&] { camera_.execute(step.command); });
+            wait_ready(step.status, {});
         }
     }
 }
