@@ -20,6 +20,11 @@ PROGRAM = pathlib.Path(sys.argv[1], 'pipelines/stack/dff-stack')
 STACKS = int(os.environ.get('DFF_BATCH_STACKS', '4'))  # more take longer
 
 
+def alone(command):
+    """In a network of its own, in which nothing but this machine is."""
+    return ['unshare', '-n', 'sh', '-c', 'ip link set lo up && exec "$@"', 'sh', *command]
+
+
 def children(pid):
     """Processes that a process has started, and their command lines."""
     found = {}
@@ -82,9 +87,8 @@ class Batch(Folders):
         self.assertEqual(self.run_batch().returncode, 0)
 
     def test_a_worker_that_is_killed_loses_no_stack(self):
-        if subprocess.run(['/usr/bin/python3', '-c', 'import distributed'], stderr=subprocess.DEVNULL).returncode:
-            self.skipTest('python3-distributed is not installed')
-        process = subprocess.Popen(self.arguments('--workers', '2'), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.skip_without_dask()
+        process = subprocess.Popen(alone(self.arguments('--workers', '2')), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         end = time.monotonic() + SECONDS
         while time.monotonic() < end and process.poll() is None and not list(self.results.glob('*.tif')):
             time.sleep(0.05)
@@ -100,6 +104,21 @@ class Batch(Folders):
         self.assert_all_but_the_broken_one(process.returncode, output)
         told = [line.split(':')[0].strip() for line in errors.splitlines() if line.startswith('   stack')]
         self.assertEqual(sorted(told), sorted(f'stack{number}' for number in range(STACKS)), errors)
+
+    def skip_without_dask(self):
+        if os.getuid() != 0:
+            self.skipTest('a network namespace takes root')
+        if subprocess.run(['/usr/bin/python3', '-c', 'import distributed'], stderr=subprocess.DEVNULL).returncode:
+            self.skipTest('python3-distributed is not installed')
+
+    def test_a_cluster_that_is_there_is_used(self):
+        self.skip_without_dask()
+        cluster = ("dask-scheduler --host 127.0.0.1 --port 8786 --no-dashboard & "
+                   "dask-worker tcp://127.0.0.1:8786 --nthreads 1 --no-dashboard & exec \"$@\"")
+        command = ['unshare', '-n', '--kill-child', '--fork', '--pid', 'sh', '-c', f'ip link set lo up; {cluster}', 'sh',
+                   *self.arguments('--scheduler', 'tcp://127.0.0.1:8786')]
+        finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=SECONDS * 3, cwd=self.photos)
+        self.assert_all_but_the_broken_one(finished.returncode, finished.stdout)
 
     def test_an_interrupt_ends_it_and_leaves_whole_files(self):
         process = subprocess.Popen(self.arguments(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -126,4 +145,4 @@ class Batch(Folders):
 
 
 if __name__ == '__main__':
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -50,8 +50,8 @@ class Plans(unittest.TestCase):
             self.assertGreaterEqual(plan.margin, 300 + slabs.MARGIN)
 
     def test_too_little_memory_is_told(self):
-        with self.assertRaisesRegex(Unusable, '0.4 GiB .* 6000x4000'):
-            slabs.plan(300, 6000, 4000, RGB, 0.4 * GIB, 100, 8192)
+        with self.assertRaisesRegex(Unusable, '0.5 GiB .* 6000x4000'):
+            slabs.plan(300, 6000, 4000, RGB, 0.5 * GIB, 100, 8192)
 
     def test_memory_is_what_the_group_may_have(self):
         with tempfile.TemporaryDirectory() as name:

@@ -4,6 +4,7 @@
 """test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, in which order, and what it refuses."""
 import pathlib
 import shutil
+import struct
 import sys
 import unittest
 
@@ -13,7 +14,7 @@ import OpenImageIO as oiio
 from sweeps import CMYK, SIDE, Folders, flat, texture, write
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, depths, encoding, order, pictures, sweep  # noqa: E402
+from dff_stack import Unusable, depths, encoding, order, sweep  # noqa: E402
 from dff_stack.progress import Progress  # noqa: E402
 
 
@@ -164,7 +165,6 @@ class Reading(Sweeps):
 
 def write_dng(path, width, height):
     """A raw file: 16 bits a pixel behind filters of red, green and blue, not compressed."""
-    import struct
     pixels = (np.arange(width * height, dtype=np.uint16).reshape(height, width) % 977) * 60 + 2000
     identity = [value for row in np.eye(3, dtype=int) for value in row]
     entries = [(254, 4, [0]), (256, 4, [width]), (257, 4, [height]), (258, 3, [16]), (259, 3, [1]), (262, 3, [32803]),

@@ -14,6 +14,7 @@ from dff_stack import Unusable, one_line  # noqa: E402
 from dff_stack.encoding import Encoding  # noqa: E402
 
 LUMA, DEPTH = Encoding('GRAY8', 1, 'u1', False), Encoding('GRAY16_LE', 1, '<u2', False)
+abandoned = []  # runs that were interrupted, which must not be freed
 TICK_NS = 100 * 1000 * 1000  # between two looks at the keyboard
 ELEMENTS = ('appsrc', 'appsink', 'focalstackalign', 'dffdepth', 'aifcompose')
 
@@ -128,7 +129,6 @@ class Run:
             self.look()
         return [found[name] for name in sinks]
 
-
     def play(self, buffers, caps, rate):
         """Frames of so many a second, to the end."""
         source = self.element('source')
@@ -154,9 +154,6 @@ def running(description, tell):
         run.pipeline.set_state(Gst.State.NULL)
         raise
     run.pipeline.set_state(Gst.State.NULL)
-
-
-abandoned = []
 
 
 def caps_of(encoding, width, height, planes):

@@ -45,7 +45,7 @@ def bytes_a_plane(encoding, pixels):
     sample = 1 if encoding.kind == 'u1' else 2
     frame = encoding.channels * sample
     stacks = 2 * frame                                     # as it came, and aligned
-    volume = 14 * 2 / 16                                   # short numbers at a quarter of the size
+    volume = 30 * 2 / 16                                   # short numbers at a quarter of the size
     sharp = 1.5 * encoding.channels * sample + 2
     return pixels * (stacks + volume + sharp)
 
@@ -53,7 +53,7 @@ def bytes_a_plane(encoding, pixels):
 def bytes_beside(encoding, pixels):
     """What a computation needs however many planes it has: results, the picture being read."""
     frame = encoding.channels * (1 if encoding.kind == 'u1' else 2)
-    return 400e6 + pixels * (4 * frame + 24)
+    return 600e6 + pixels * (4 * frame + 24)
 
 
 def slabs_of(count, size):
