@@ -75,6 +75,7 @@ def process(options, progress, tell):
         depths.take_step(found.pictures, options.step)
     with results.together() as files:
         warps = warps_of(options, found, look, say, progress)
+        look.keep_small()
         work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'))
         solved = solve.solve(found, warps, work)
         progress.begin('Writing', 1)

@@ -9,8 +9,9 @@ import tempfile
 import numpy as np
 
 from dff_stack import SOFTWARE, results, video
+from dff_stack.sweep import CONTACT
 
-THUMBNAIL, LARGE = 160, 1200  # pixels of the longer side
+LARGE = 1200  # pixels of the longer side
 STYLE = '''body { font: 15px/1.5 sans-serif; margin: 2em auto; max-width: 1240px; padding: 0 1em; color: #222; background: #fff }
 h1 { font-size: 1.5em } h2 { font-size: 1.15em; margin-top: 2em } img { max-width: 100%; height: auto; vertical-align: top }
 .sheet { display: flex; flex-wrap: wrap; gap: 8px } .sheet figure { margin: 0; width: 160px; font-size: 12px; overflow-wrap: anywhere }
@@ -60,7 +61,7 @@ def shares_of(depth, count):
 
 def page(title, said, pictures, warps, lumas, solved, colours, depth_colours, confidence):
     """`said`: lines that were told while the pictures were worked on."""
-    sheet = ''.join(f'<figure>{image(luma[:, :, None], THUMBNAIL, picture.name)}<figcaption>{number} {html.escape(picture.name)}</figcaption>'
+    sheet = ''.join(f'<figure>{image(luma[:, :, None], CONTACT, picture.name)}<figcaption>{number} {html.escape(picture.name)}</figcaption>'
                     '</figure>' for number, (picture, luma) in enumerate(zip(pictures, lumas), 1))
     notes = ''.join(f'<p class="note">{html.escape(line.strip())}</p>' for line in said)
     table = ''.join(rows(pictures, warps, lumas, shares_of(solved.depth, len(pictures))))

@@ -11,6 +11,7 @@ from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
 THUMBNAIL = 32    # in which they are compared
+CONTACT = 160     # that a report shows
 PREVIEW = 4       # times smaller
 
 
@@ -42,6 +43,10 @@ class Look:
     factor: int       # how many times smaller than the picture they are
     thumbnails: list
     white: float      # the brightest of all, of numbers with a point
+
+    def keep_small(self):
+        """Frees the memory of what alignment has been found in."""
+        self.lumas = [np.round(encoding.shrunk_luma(luma[:, :, None], CONTACT)).astype(np.uint8) for luma in self.lumas]
 
     def leave_out(self, numbers):
         for values in (self.lumas, self.thumbnails):
