@@ -27,11 +27,17 @@ architecture rtl of synchronizer is
 
   constant GLITCH_CYCLES : positive := to_cycles(CLOCK_HZ, GLITCH_S);
 
-  -- Two flip-flops: the first may be metastable for a clock (ASYNC_REG stands in the constraints)
+  -- Two flip-flops: the first may be metastable for a clock
   signal metastable : std_ulogic;
   signal stable     : std_ulogic;
   signal level      : std_ulogic;
   signal count      : natural range 0 to GLITCH_CYCLES - 1;
+
+  -- Placed side by side, and neither replicated nor made a shift register
+  attribute async_reg                       : string;
+  attribute keep                            : string;
+  attribute async_reg of metastable, stable : signal is "TRUE";
+  attribute keep of metastable, stable      : signal is "TRUE";
 
 begin
 
