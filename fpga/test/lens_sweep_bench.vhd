@@ -1,16 +1,22 @@
 -- SPDX-License-Identifier: LGPL-2.1-or-later
 -- Copyright (C) 2026 the gst-plugins-dff authors
 --
--- The top on a bench: a clock, pull-ups, and open-drain inputs for the models of the host and of the lens driver.
+-- The top on a bench: a clock, pull-ups, and open-drain inputs for the models of the host and of the lens driver. The
+-- models pull weakly, so that a pin tells whether the design itself holds it low: '0', and 'L' if only a model does.
 
 library ieee;
   use ieee.std_logic_1164.all;
+
+library std;
+  use std.textio.all;
 
 entity lens_sweep_bench is
   generic (
     CLOCK_HZ : positive := 8_000_000;
     -- How many times faster than real the microsecond, the lens bus and the limits run
-    SCALE : positive := 1
+    SCALE : positive := 1;
+    -- File for the pins as they are at each clock edge, for the replay on a netlist; none if empty
+    TRACE : string := ""
   );
   port (
     reset_button : in    std_ulogic;
@@ -43,18 +49,49 @@ begin
 
   clk <= not clk after HALF_PERIOD;
 
-  host_scl_pin <= '0' when host_scl_low = '1' else
+  host_scl_pin <= 'L' when host_scl_low = '1' else
                   'H';
-  host_sda_pin <= '0' when host_sda_low = '1' else
+  host_sda_pin <= 'L' when host_sda_low = '1' else
                   'H';
-  lens_scl_pin <= '0' when lens_scl_low = '1' else
+  lens_scl_pin <= 'L' when lens_scl_low = '1' else
                   'H';
-  lens_sda_pin <= '0' when lens_sda_low = '1' else
+  lens_sda_pin <= 'L' when lens_sda_low = '1' else
                   'H';
 
   host_sda <= to_x01(host_sda_pin);
   lens_scl <= to_x01(lens_scl_pin);
   lens_sda <= to_x01(lens_sda_pin);
+
+  -- Number of the edge and the pins at it, for each edge at which a pin has changed
+
+  record_pins : if TRACE'length /= 0 generate
+
+    write_trace : process (clk) is
+
+      file     trace_file : text open write_mode is TRACE;
+      variable row        : line;
+      variable edge       : natural;
+      variable pins       : std_ulogic_vector(1 to 10);
+      variable written    : std_ulogic_vector(1 to 10);
+
+    begin
+
+      if rising_edge(clk) then
+        pins := reset_button & run & host_scl_pin & host_sda_pin & lens_scl_pin & lens_sda_pin &
+                sync & trigger & busy & error;
+        if (edge = 0 or pins /= written) then
+          write(row, edge);
+          write(row, ' ');
+          write(row, to_string(pins));
+          writeline(trace_file, row);
+          written := pins;
+        end if;
+        edge := edge + 1;
+      end if;
+
+    end process write_trace;
+
+  end generate record_pins;
 
   dut : entity work.lens_sweep_top
     generic map (

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""What GHDL's synthesis made of the design, from its dump: cells, flip-flops, an estimate of look-up tables."""
+"""What GHDL's synthesis made of the design, from its dump: cells."""
 
 import re
 from collections import Counter
 
 # Cells that must not come up: a multiplier, a divider, a latch
 FORBIDDEN = {"smul", "umul", "sdiv", "udiv", "smod", "umod", "srem", "dlatch", "latch"}
-ARITHMETIC = {"add", "sub", "ult", "ule", "ugt", "uge", "slt", "sle", "sgt", "sge"}
-LOGIC = {"and", "or", "xor", "eq", "ne", "mux2", "mux4", "pmux"}
 
 
 def modules_of(text):
@@ -47,11 +45,3 @@ def count(text, top="lens_sweep_top"):
 
     visit(next(name for name in modules if name.startswith(top)))
     return cells, bits
-
-
-def estimate(text):
-    """Flip-flops, look-up tables (roughly, from above), memories."""
-    cells, bits = count(text)
-    return {"flip-flops": bits["dff"] + bits["idff"],
-            "look-up tables": sum(bits[cell] for cell in ARITHMETIC) + sum(bits[cell] for cell in LOGIC) // 2,
-            "memories": cells["mem_wr_sync"]}

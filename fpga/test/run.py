@@ -26,6 +26,10 @@ import netlist
 
 TEST = Path(__file__).resolve().parent
 FPGA = TEST.parent
+sys.path.insert(0, str(FPGA / "flow"))
+import mapped  # noqa: E402
+import pins  # noqa: E402
+
 RTL = FPGA / "rtl"
 BUILD = Path(os.environ.get("FPGA_BUILD", FPGA.parent / "build" / "fpga"))
 COVERAGE = BUILD / "coverage.jsonl"
@@ -33,6 +37,8 @@ FAST = {"CLOCK_HZ": 8_000_000}
 REAL = {"CLOCK_HZ": 125_000_000}
 SCALED = {"CLOCK_HZ": 8_000_000, "SCALE": 2}
 STANDARD = "--std=08"
+# An attribute for Vivado, of which GHDL says that it is not for GHDL
+FOREIGN_ATTRIBUTE = 'warning: unhandled attribute "async_reg"'
 # A bench or check that takes longer hangs
 LIMIT_S = 900
 
@@ -67,8 +73,12 @@ CHAIN = [
     Bench("test_sweep_exact", "lens_sweep_bench", FAST, "one_real_sweep"),
     Bench("test_sweep_exact", "lens_sweep_bench", REAL, "one_plane_125_mhz", ONE_PLANE=1,
           TESTS="one_plane_at_the_real_clock"),
+    Bench("test_sweep_exact", "lens_sweep_bench", {"CLOCK_HZ": 25_000_000}, "one_plane_25_mhz", ONE_PLANE=1,
+          TESTS="one_plane_at_the_real_clock"),
     Bench("test_contract", "lens_sweep_bench", SCALED),
     Bench("test_sweep_exact", "lens_sweep_bench", SCALED, "hundred_sweeps", SWEEPS=100),
+    Bench("test_lens_sweep_top", "lens_sweep_bench", SCALED, "hundred_tables", TABLES=100,
+          TESTS="random_tables_sweep_as_the_model_says"),
 ]
 
 BENCHES = ENTITIES + CHAIN
@@ -103,12 +113,13 @@ def simulate(runner, bench, rtl, folder, log, tests=None):
     environment = {"PYTHONPATH": str(TEST), "BENCH_RTL": str(rtl), "BENCH_COVERAGE": str(COVERAGE),
                    "BENCH_CASES": str(BUILD), **bench.environment}
     tests = tests or bench.environment.get("BENCH_TESTS")
+    parameters = bench.generics | ({"TRACE": str(trace_of(folder, bench))} if bench.name in mapped.REPLAYED else {})
     finished = True
     signal.signal(signal.SIGALRM, give_up)
     signal.alarm(LIMIT_S)
     try:
         runner.test(hdl_toplevel=bench.toplevel, test_module=bench.module, test_args=[STANDARD],
-                    elab_args=[], plusargs=["--ieee-asserts=disable-at-0"], parameters=bench.generics,
+                    elab_args=[], plusargs=["--ieee-asserts=disable-at-0"], parameters=parameters,
                     build_dir=folder, test_dir=folder, extra_env=environment, results_xml=str(results), log_file=log,
                     testcase=tests, seed=1, timescale=None)
     except (RuntimeError, SystemExit, TimeoutError):
@@ -126,6 +137,11 @@ def simulate(runner, bench, rtl, folder, log, tests=None):
     return verdict
 
 
+def trace_of(folder, bench):
+    """Where a bench of the chain leaves the pins at every clock."""
+    return folder / f"{bench.name}.trace"
+
+
 def give_up(*_):
     raise TimeoutError
 
@@ -134,7 +150,7 @@ class Report:
     """Counts, and prints as it goes."""
 
     def __init__(self):
-        self.passed = self.failed = 0
+        self.passed = self.failed = self.skipped = 0
 
     def add(self, name, good, log=None):
         self.passed += good
@@ -142,6 +158,13 @@ class Report:
         print(f"{'PASS' if good else 'FAIL'}  {name}", flush=True)
         if not good and log and log.exists():
             print(excerpt(log, name.rpartition(" ")[2]), flush=True)
+
+    def skip(self, name, reason):
+        self.skipped += 1
+        print(f"SKIP  {name}: {reason}", flush=True)
+
+    def count(self):
+        return f"{self.passed} passed, {self.failed} failed" + (f", {self.skipped} skipped" if self.skipped else "")
 
 
 def excerpt(log, test):
@@ -160,7 +183,7 @@ def run_command(report, name, command, bad_words=()):
     with open(log, "w", encoding="utf-8") as file:
         code = subprocess.run(command, cwd=BUILD, stdout=file, stderr=subprocess.STDOUT, timeout=LIMIT_S,
                               check=False).returncode
-    text = log.read_text(encoding="utf-8").lower()
+    text = log.read_text(encoding="utf-8").lower().replace(FOREIGN_ATTRIBUTE, "")
     report.add(name, code == 0 and not any(word in text for word in bad_words), log)
 
 
@@ -180,7 +203,6 @@ def check_synthesis(report):
     cells, _ = netlist.count(dump)
     forbidden = sorted(netlist.FORBIDDEN & set(cells))
     report.add("no divider, multiplier or latch " + " ".join(forbidden), cells["dff"] > 0 and not forbidden)
-    print("resources: " + ", ".join(f"{number} {what}" for what, number in netlist.estimate(dump).items()))
 
 
 def check_elaboration(report):
@@ -209,13 +231,38 @@ def check_pages(report):
 
 
 def check_constraints(report):
-    """Every port of the top has its pin and its level, and no pin has two."""
-    text = (FPGA / "constraints" / "arty_z7.xdc").read_text(encoding="utf-8")
-    pins = re.findall(r"PACKAGE_PIN (\w+) IOSTANDARD \w+.*\[get_ports (\w+)\]", text)
+    """Every port of the top has its pin on every board, no pin has two, and buses and `run` have their pulls."""
     top = (RTL / "lens_sweep_top.vhd").read_text(encoding="utf-8")
     ports = re.findall(r"^\s*(\w+)\s*: (?:in|out|inout) ", top, re.MULTILINE)
-    report.add("every port of the top has its pin",
-               sorted(port for _, port in pins) == sorted(ports) and len({pin for pin, _ in pins}) == len(ports))
+    wanted = {"run": "PULLDOWN"} | dict.fromkeys(("host_scl", "host_sda", "lens_scl", "lens_sda"), "PULLUP")
+    for file in ("arty_z7.xdc", "ulx3s.lpf"):
+        found = pins.pins_of(file)
+        report.add(f"every port of the top has its pin in {file}",
+                   sorted(found) == sorted(ports) and len({pin for pin, _ in found.values()}) == len(ports)
+                   and all(found[port][1] == pull for port, pull in wanted.items()))
+
+
+def mutated(mutation, folder):
+    """The design with a line broken, in a folder; None if the line is not there once."""
+    rtl = folder / "rtl"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(RTL, rtl)
+    file = rtl / f"{mutation['entity']}.vhd"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace(mutation["line"], mutation["becomes"]), encoding="utf-8")
+    return rtl if text.count(mutation["line"]) == 1 else None
+
+
+def check_netlists(report, every):
+    """The netlists of the boards' parts show the pins of the design at every clock that the chain was tried with."""
+    traces = {bench.name: trace_of(BUILD / "design", bench) for bench in CHAIN if bench.name in mapped.REPLAYED}
+    listed = tomllib.loads((TEST / "mutations.toml").read_text(encoding="utf-8"))["mutation"]
+    hidden = [mutation for mutation in listed if "hidden" in mutation]
+    seen = [mutation for mutation in listed if mutation not in hidden]
+    mutations = [(mutation, mutated(mutation, BUILD / f"mutation_{number}"))
+                 for number, mutation in enumerate(seen if every else seen[:1])]
+    mapped.check(report, RTL, traces, mutations)
+    mapped.check_boards(report)
 
 
 def check_mutations(report, every):
@@ -228,15 +275,11 @@ def check_mutations(report, every):
             continue
         done.add(entity)
         folder = BUILD / "mutation"
-        rtl = folder / "rtl"
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.copytree(RTL, rtl)
-        text = (rtl / f"{entity}.vhd").read_text(encoding="utf-8")
         name = f"bench of {entity} notices: {mutation['breaks']}"
-        if text.count(mutation["line"]) != 1:
+        rtl = mutated(mutation, folder)
+        if not rtl:
             report.add(f"{name} (the line is not there, or not once)", False)
             continue
-        (rtl / f"{entity}.vhd").write_text(text.replace(mutation["line"], mutation["becomes"]), encoding="utf-8")
         bench = next(bench for bench in BENCHES if bench.name == mutation.get("bench", entity))
         log = folder / "log"
         try:
@@ -304,12 +347,14 @@ def main():
             for line in log.read_text(encoding="utf-8", errors="replace").splitlines():
                 if "budget of" in line:
                     print("      " + line[line.index("budget of"):])
+    if options.only in "netlists" or options.all_mutations:
+        check_netlists(report, options.all_mutations)
     if not options.only:
         report.add("every state and every error bit was seen", print_coverage())
     if options.only in "mutations" or options.all_mutations:
         check_mutations(report, options.all_mutations)
 
-    print(f"{report.passed} passed, {report.failed} failed")
+    print(report.count())
     sys.exit(1 if report.failed else 0)
 
 
