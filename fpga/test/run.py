@@ -325,6 +325,9 @@ def main():
 
     if options.only in "registers":
         run_command(report, "generated files are current", [sys.executable, str(FPGA / "generate.py"), "--check"])
+    if options.only in "flow":
+        run_command(report, "what stands between the tools", [sys.executable, "-m", "pytest", "-q", "-p",
+                                                              "no:cacheprovider", str(TEST / "test_flow.py")])
     if options.only in "pages":
         check_pages(report)
     if options.only in "constraints":
