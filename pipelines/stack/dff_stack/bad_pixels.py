@@ -11,40 +11,56 @@ FEWEST = 5      # with fewer, something may be sharp in all of them
 STANDS_OUT = 0.08  # of the range
 
 
-def excess(brightness):
-    """How far each pixel lies above the greatest, or below the least, of its eight neighbours."""
+def brightness_of(pixels):
+    brightness = pixels[:, :, 0]
+    for channel in range(1, pixels.shape[2]):
+        brightness = np.maximum(brightness, pixels[:, :, channel])
+    return brightness
+
+
+def around(brightness, choose):
+    """The greatest or the least of the eight neighbours of each pixel but those at the border; `choose` is np.maximum or np.minimum."""
+    rows = choose(choose(brightness[:, :-2], brightness[:, 1:-1]), brightness[:, 2:])
+    return choose(choose(rows[:-2], rows[2:]), choose(brightness[1:-1, :-2], brightness[1:-1, 2:]))
+
+
+def standing_out(brightness, most):
+    """Where pixels lie more than `most` above, or below, all of their neighbours: two arrays of rows and columns."""
     inner = brightness[1:-1, 1:-1]
-    height, width = brightness.shape
-    around = [brightness[1 + dy:height - 1 + dy, 1 + dx:width - 1 + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx]
-    greatest, least = around[0].copy(), around[0].copy()
-    for neighbour in around[1:]:
-        np.maximum(greatest, neighbour, out=greatest)
-        np.minimum(least, neighbour, out=least)
-    found = np.zeros_like(brightness)
-    found[1:-1, 1:-1] = np.where(inner > greatest, inner - greatest, np.minimum(inner - least, 0))
-    return found
+    above, below = around(brightness, np.maximum), around(brightness, np.minimum)
+    bright = (inner > above) & (inner - above > most)  # whole numbers without a sign: looked at before they are subtracted
+    dark = (inner < below) & (below - inner > most)
+    return np.argwhere(bright) + 1, np.argwhere(dark) + 1
 
 
 class BadPixels:
     def __init__(self, count):
         """`count`: pictures of the sweep."""
         self.numbers = set(np.linspace(0, count - 1, SAMPLES).round().astype(int)) if count >= FEWEST else set()
-        self.above = self.below = None
+        self.places = None  # that are bright in all pictures so far, and dark
 
     def look_at(self, number, pixels, largest):
         """`largest`: the greatest number that a pixel can have."""
         if number not in self.numbers:
             return
-        brightness = np.max(pixels, 2).astype(np.float32) if pixels.shape[2] > 1 else pixels[:, :, 0].astype(np.float32)
-        here = excess(brightness) / largest
-        self.above = here if self.above is None else np.minimum(self.above, here)
-        self.below = here.copy() if self.below is None else np.maximum(self.below, here)
+        brightness = brightness_of(pixels)
+        if self.places is None:
+            self.places = standing_out(brightness, STANDS_OUT * largest)
+            return
+        self.places = tuple(places[stand_out(brightness, places, sign, STANDS_OUT * largest)]
+                            for places, sign in zip(self.places, (1, -1)))
 
     def found(self):
         """Rows and columns."""
-        if self.above is None:
-            return np.empty((0, 2), int)
-        return np.argwhere((self.above > STANDS_OUT) | (self.below < -STANDS_OUT))
+        return np.concatenate(self.places) if self.places is not None else np.empty((0, 2), int)
+
+
+def stand_out(brightness, places, sign, most):
+    """The same of some places: which of them do."""
+    rows, columns = places.T
+    here = sign * brightness[rows, columns].astype(np.int64)
+    others = [sign * brightness[rows + dy, columns + dx].astype(np.int64) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx]
+    return here - np.max(others, 0) > most
 
 
 def repair(frame, places):

@@ -125,8 +125,10 @@ def finite_maximum(pixels):
 def smaller(pixels, factor):
     """Means of squares."""
     rows, columns = pixels.shape[0] // factor, pixels.shape[1] // factor
-    squares = pixels[:rows * factor, :columns * factor].reshape(rows, factor, columns, factor, -1)
-    means = squares.mean((1, 3), dtype=np.float32)
+    whole = np.ascontiguousarray(pixels[:rows * factor, :columns * factor])
+    total = np.float32 if pixels.dtype.kind == 'f' else np.uint32
+    sums = whole.reshape(rows, factor, -1).sum(1, dtype=total).reshape(rows, columns, factor, -1).sum(2, dtype=np.float32)
+    means = sums / np.float32(factor * factor)
     return means if pixels.dtype.kind == 'f' else np.round(means).astype(pixels.dtype)
 
 
