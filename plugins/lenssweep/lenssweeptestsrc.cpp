@@ -19,6 +19,8 @@
  * has a magnification of 1 at plane planes / 2, onto which focalstackalign aligns. Put a queue behind each
  * pad.
  *
+ * scene=board shows a chessboard to calibrate by, in a pose that is known: see dff-calibrate.
+ *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! videoconvert ! autovideosink

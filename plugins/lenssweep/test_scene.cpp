@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_scene.h"
 
+#include "engine/scene/scene_board.h"
 #include "engine/scene/scene_files.h"
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/scene_slant.h"
@@ -25,6 +26,40 @@ dff::SensorNoise parse_noise(const std::string &text)
     return *noise;
 }
 
+dff::BoardSheet parse_board(const std::string &text)
+{
+    const auto sheet = dff::BoardSheet::parse(text);
+    if (!sheet)
+        throw std::invalid_argument("board \"" + text +
+                                    "\" is not known; use COLUMNSxROWSxMILLIMETRES, such as 10x7x25");
+    return *sheet;
+}
+
+dff::BoardPose parse_pose(const std::string &text)
+{
+    const auto pose = dff::BoardPose::parse(text);
+    if (!pose)
+        throw std::invalid_argument("pose \"" + text +
+                                    "\" is not known; use X,Y,Z in metres, Z above 0, or X,Y,Z,RX,RY,RZ "
+                                    "with degrees, such as 0,0,0.5,20,0,0");
+    return *pose;
+}
+
+/* A lens of some 44 degrees, unless a file says what it is. */
+dff::CameraCalibration camera_of(const std::string &file, cv::Size size)
+{
+    const auto width = static_cast<unsigned>(size.width), height = static_cast<unsigned>(size.height);
+    if (!file.empty())
+        return dff::read_camera_calibration(file).scaled_to(width, height);
+    const double focal_length = 1.25 * size.width;
+    return {.width = width,
+            .height = height,
+            .fx = focal_length,
+            .fy = focal_length,
+            .cx = (size.width - 1) / 2.0,
+            .cy = (size.height - 1) / 2.0};
+}
+
 } // namespace
 
 GType gst_lens_sweep_test_scene_get_type()
@@ -33,6 +68,7 @@ GType gst_lens_sweep_test_scene_get_type()
         {GST_LENS_SWEEP_TEST_SCENE_SHAPES, "Balls, blocks and pillars on a slanted ground", "shapes"},
         {GST_LENS_SWEEP_TEST_SCENE_SLANT, "One slanted textured plane", "slant"},
         {GST_LENS_SWEEP_TEST_SCENE_FILES, "The files of image and depth-map", "files"},
+        {GST_LENS_SWEEP_TEST_SCENE_BOARD, "A chessboard: board, pose and calibration", "board"},
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstLensSweepTestScene", values);
@@ -42,6 +78,8 @@ GType gst_lens_sweep_test_scene_get_type()
 void TestScene::check() const
 {
     parse_noise(noise);
+    parse_board(board);
+    parse_pose(pose);
     if (blur_step < 0.0 && blur_step != blur_of_sweep)
         throw std::invalid_argument("blur-step is 0 to 100 pixels, or -1");
     if (scene == GST_LENS_SWEEP_TEST_SCENE_FILES && (image.empty() || depth_map.empty()))
@@ -57,13 +95,15 @@ std::optional<cv::Size> TestScene::natural_size() const
     return dff::image_size(image);
 }
 
-dff::Scene TestScene::make(cv::Size size, const std::stop_token &stop) const
+dff::Scene TestScene::make(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const
 {
     switch (scene) {
     case GST_LENS_SWEEP_TEST_SCENE_SLANT:
         return dff::make_slant(size, seed);
     case GST_LENS_SWEEP_TEST_SCENE_FILES:
         return dff::resize_scene(dff::load_scene(image, depth_map), size);
+    case GST_LENS_SWEEP_TEST_SCENE_BOARD:
+        return dff::make_board(parse_board(board), parse_pose(pose), camera_of(calibration, size), plan);
     default:
         return dff::make_shapes(size, seed, stop);
     }
@@ -76,6 +116,13 @@ dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
     const gdouble step = blur_step == blur_of_sweep
                              ? std::min(most_blur_a_plane, blur_of_all / (plan.planes() - 1.0))
                              : blur_step;
-    const dff::SweptCameraSettings settings{plan, step, parse_noise(noise), motion, breathing, jitter, seed};
-    return {make(size, stop), settings, stop};
+    const dff::SweptCameraSettings settings{.plan = plan,
+                                            .blur_step = step,
+                                            .noise = parse_noise(noise),
+                                            .motion = motion,
+                                            .breathing = breathing,
+                                            .field_curvature = field_curvature,
+                                            .jitter = jitter,
+                                            .seed = seed};
+    return {make(plan, size, stop), settings, stop};
 }

@@ -14,6 +14,7 @@ enum GstLensSweepTestScene {
     GST_LENS_SWEEP_TEST_SCENE_SHAPES,
     GST_LENS_SWEEP_TEST_SCENE_SLANT,
     GST_LENS_SWEEP_TEST_SCENE_FILES,
+    GST_LENS_SWEEP_TEST_SCENE_BOARD,
 };
 
 #define GST_TYPE_LENS_SWEEP_TEST_SCENE (gst_lens_sweep_test_scene_get_type())
@@ -27,10 +28,14 @@ struct TestScene {
     GstLensSweepTestScene scene = GST_LENS_SWEEP_TEST_SCENE_SHAPES;
     std::string image;
     std::string depth_map;
+    std::string board = "10x7x25";
+    std::string pose = "0,0,0.5";
+    std::string calibration;
     gdouble blur_step = blur_of_sweep; /* pixels from plane to plane */
     std::string noise = "none";
     gdouble motion = 0.0;
     gdouble breathing = 0.0;
+    gdouble field_curvature = 0.0;
     gdouble jitter = 0.0;
     gdouble flicker = 0.0;
     guint light_switch = 0;
@@ -51,5 +56,5 @@ struct TestScene {
     dff::SweptCamera camera(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const;
 
 private:
-    dff::Scene make(cv::Size size, const std::stop_token &stop) const;
+    dff::Scene make(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const;
 };

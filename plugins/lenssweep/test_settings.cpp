@@ -23,6 +23,10 @@ enum {
     PROP_LIGHT_SWITCH,
     PROP_IS_LIVE,
     PROP_NUM_BUFFERS,
+    PROP_BOARD,
+    PROP_POSE,
+    PROP_CALIBRATION,
+    PROP_FIELD_CURVATURE,
 };
 
 void set_string(std::string &target, const GValue *value)
@@ -43,6 +47,18 @@ bool set_scene_property(TestScene &scene, guint id, const GValue *value)
         return true;
     case PROP_DEPTH_MAP:
         set_string(scene.depth_map, value);
+        return true;
+    case PROP_BOARD:
+        set_string(scene.board, value);
+        return true;
+    case PROP_POSE:
+        set_string(scene.pose, value);
+        return true;
+    case PROP_CALIBRATION:
+        set_string(scene.calibration, value);
+        return true;
+    case PROP_FIELD_CURVATURE:
+        scene.field_curvature = g_value_get_double(value);
         return true;
     case PROP_BLUR_STEP:
         scene.blur_step = g_value_get_double(value);
@@ -84,6 +100,18 @@ bool get_scene_property(const TestScene &scene, guint id, GValue *value)
         return true;
     case PROP_DEPTH_MAP:
         g_value_set_string(value, scene.depth_map.c_str());
+        return true;
+    case PROP_BOARD:
+        g_value_set_string(value, scene.board.c_str());
+        return true;
+    case PROP_POSE:
+        g_value_set_string(value, scene.pose.c_str());
+        return true;
+    case PROP_CALIBRATION:
+        g_value_set_string(value, scene.calibration.c_str());
+        return true;
+    case PROP_FIELD_CURVATURE:
+        g_value_set_double(value, scene.field_curvature);
         return true;
     case PROP_BLUR_STEP:
         g_value_set_double(value, scene.blur_step);
@@ -148,6 +176,40 @@ bool get_test_property(const TestSettings &settings, guint id, GValue *value)
     default:
         return get_scene_property(settings.scene, id, value) || get_sweep_property(settings.sweep, id, value);
     }
+}
+
+static void install_board_properties(GObjectClass *klass, const TestScene &defaults)
+{
+    constexpr auto playing =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+    const auto install = [klass](guint id, GParamSpec *spec) {
+        g_object_class_install_property(klass, id, spec);
+    };
+    install(PROP_BOARD,
+            g_param_spec_string("board", "Board",
+                                "scene=board: squares of the chessboard in a row and in a column, and "
+                                "the side of one in millimetres, as 10x7x25; around it is a border as "
+                                "wide as a square",
+                                defaults.board.c_str(), playing));
+    install(PROP_POSE,
+            g_param_spec_string("pose", "Pose",
+                                "scene=board: where the middle of the board is, X,Y,Z in metres right, "
+                                "down and away, and how it is turned about these axes one after the "
+                                "other, in degrees: 0,0,0.5,20,0,0",
+                                defaults.pose.c_str(), playing));
+    install(
+        PROP_CALIBRATION,
+        g_param_spec_string("calibration", "Calibration",
+                            "scene=board: file of the camera's calibration, as dffdepth has it, with which "
+                            "the board is seen; empty: a focal length of 1.25 widths, without distortion",
+                            defaults.calibration.c_str(), playing));
+    install(
+        PROP_FIELD_CURVATURE,
+        dff::checked_at_start(g_param_spec_double(
+            "field-curvature", "Field curvature",
+            "Planes that what is sharp in the picture's corners lies farther away than what is sharp in its "
+            "centre; grows with the square of the distance from the centre",
+            -10.0, 10.0, defaults.field_curvature, playing)));
 }
 
 void install_test_properties(GObjectClass *klass)
@@ -224,4 +286,5 @@ void install_test_properties(GObjectClass *klass)
                   g_param_spec_int("num-buffers", "Number of buffers",
                                    "Frames to send before the end of the stream; -1 is no end", -1, G_MAXINT,
                                    defaults.num_buffers, ready));
+    install_board_properties(klass, defaults.scene);
 }

@@ -11,7 +11,7 @@ namespace dff {
 
 /* The part of one depth layer that can be seen in a tile, blurred or not. */
 struct LayerPatch {
-    int layer;       /* 0 is the nearest */
+    int layer;       /* a smaller number is nearer */
     cv::Rect where;  /* in the picture */
     cv::Mat3b color; /* continued behind nearer layers with the nearest visible colour */
     cv::Mat1b reach; /* the layer covers a pixel once its blur reaches this far; 255: never */

@@ -5,6 +5,7 @@
 #include "engine/scene/seeds.h"
 #include "optics/depth_scale.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -17,14 +18,31 @@ enum SeedUse : uint64_t { jitter_seed = 1, noise_seed = 2, ball_seed = 3 };
 
 uint16_t depth_pixel(double depth)
 {
-    return static_cast<uint16_t>(1 + cvRound((DepthScale::max_pixel - 1) * depth));
+    return static_cast<uint16_t>(1 + cvRound((DepthScale::max_pixel - 1) * std::clamp(depth, 0.0, 1.0)));
+}
+
+/* The scene bent as a lens does that sees the picture's corners sharp `planes` planes farther away. */
+Scene bent(const Scene &scene, double planes, double last_plane)
+{
+    if (planes == 0.0)
+        return scene;
+    Scene result{scene.color, scene.depth.clone(), scene.known};
+    const cv::Point2d center((scene.size().width - 1) / 2.0, (scene.size().height - 1) / 2.0);
+    const double corner = std::max(center.ddot(center), 1.0);
+    for (int y = 0; y < result.depth.rows; y++)
+        for (int x = 0; x < result.depth.cols; x++) {
+            const cv::Point2d at = cv::Point2d(x, y) - center;
+            result.depth(y, x) -= static_cast<float>(planes / last_plane * at.ddot(at) / corner);
+        }
+    return result;
 }
 
 } // namespace
 
 SweptCamera::SweptCamera(Scene scene, SweptCameraSettings settings, const std::stop_token &stop)
     : scene_(std::move(scene)), settings_(std::move(settings)),
-      renderer_(scene_, settings_.plan.planes(), settings_.blur_step, stop)
+      renderer_(bent(scene_, settings_.field_curvature, settings_.plan.planes() - 1.0),
+                settings_.plan.planes(), settings_.blur_step, stop)
 {
     if (settings_.motion == 0.0)
         return;

@@ -19,11 +19,13 @@ struct SweptCameraSettings {
     SweepPlan plan = SweepPlan::even(6, 5.0, 0.0);
     double blur_step = 2.0; /* mean change of the circle of confusion from plane to plane, pixels */
     SensorNoise noise;
-    double motion = 0.0;    /* pixels a ball flies from plane to plane, 0: there is no ball */
-    double breathing = 0.0; /* magnification of the last plane minus that of the first; plane
-                               planes / 2, onto which stacks are aligned, is seen as depth_map()
-                               has it */
-    double jitter = 0.0;    /* root mean square of each plane's shift along x and y, pixels */
+    double motion = 0.0;          /* pixels a ball flies from plane to plane, 0: there is no ball */
+    double breathing = 0.0;       /* magnification of the last plane minus that of the first; plane
+                                     planes / 2, onto which stacks are aligned, is seen as depth_map()
+                                     has it */
+    double field_curvature = 0.0; /* planes that what is sharp in the picture's corners lies farther away
+                                     than what is sharp in its centre; grows with the square */
+    double jitter = 0.0;          /* root mean square of each plane's shift along x and y, pixels */
     uint64_t seed = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include "engine/scene/disk_kernel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -77,15 +78,17 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
                                    const std::stop_token &stop)
     : sharp_(scene.color), blur_step_(blur_step)
 {
-    const double largest = blur_step * (planes - 1);
+    double shallowest = 0.0, deepest = 0.0;
+    cv::minMaxIdx(scene.depth, &shallowest, &deepest);
+    const double extent = std::max({1.0, deepest, 1.0 - shallowest});
+    const double largest = blur_step * (planes - 1) * extent;
     if (largest > max_blur_diameter)
         throw std::invalid_argument("a blur of " + std::to_string(std::lround(largest)) +
                                     " pixels over the sweep is too much; choose a blur-step of at most " +
-                                    std::to_string(max_blur_diameter / (planes - 1)));
+                                    std::to_string(max_blur_diameter / (planes - 1) / extent));
     if (stop.stop_requested())
         return;
-    double deepest = 0.0;
-    cv::minMaxIdx(scene.depth, nullptr, &deepest);
+    nearest_ = layer_of(shallowest * (planes - 1));
     farthest_ = layer_of(deepest * (planes - 1));
     tiles_ = cut_scene(scene.color, layers_of(scene.depth, planes), disk_reach(largest), stop);
 }
@@ -99,7 +102,7 @@ void ThinLensRenderer::render_tile(const SceneTile &tile, const Layers &layers,
         if (patch.layer < layers.nearest || patch.layer > layers.farthest)
             continue;
         const cv::Rect touched = patch.where & tile.where;
-        const cv::Mat4f blurred = blur_patch(patch, kernels[static_cast<size_t>(patch.layer)]);
+        const cv::Mat4f blurred = blur_patch(patch, kernels[static_cast<size_t>(patch.layer - nearest_)]);
         const cv::Mat4f layer = blurred(touched - patch.where.tl());
         if (patch.layer == farthest_)
             paint(picture(touched), layer);
@@ -112,7 +115,7 @@ cv::Mat4f ThinLensRenderer::composite(double z, const Layers &layers, const cv::
                                       const std::stop_token &stop) const
 {
     std::vector<cv::Mat1f> kernels;
-    for (int layer = 0; layer <= farthest_; layer++)
+    for (int layer = nearest_; layer <= farthest_; layer++)
         kernels.push_back(disk_kernel(blur_diameter(layer / layers_per_plane, z)));
 
     cv::Mat4f picture(size(), cv::Vec4f());
@@ -129,7 +132,7 @@ cv::Mat4f ThinLensRenderer::composite(double z, const Layers &layers, const cv::
 cv::Mat3f ThinLensRenderer::render(double z, const std::stop_token &stop) const
 {
     cv::Mat3f picture;
-    cv::cvtColor(composite(z, {0, farthest_}, whole(), stop), picture, cv::COLOR_RGBA2RGB);
+    cv::cvtColor(composite(z, {nearest_, farthest_}, whole(), stop), picture, cv::COLOR_RGBA2RGB);
     return picture;
 }
 
@@ -142,7 +145,7 @@ cv::Mat4f ThinLensRenderer::render_behind(double z, double u, const cv::Rect &re
 cv::Mat4f ThinLensRenderer::render_before(double z, double u, const cv::Rect &region,
                                           const std::stop_token &stop) const
 {
-    return composite(z, {0, layer_of(u) - 1}, region, stop);
+    return composite(z, {nearest_, layer_of(u) - 1}, region, stop);
 }
 
 } // namespace dff

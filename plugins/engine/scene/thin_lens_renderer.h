@@ -20,8 +20,8 @@ public:
     static constexpr double layers_per_plane = 4.0;
     static constexpr int max_blur_diameter = 500;
 
-    /* `planes` planes even in dioptres span the depth of the scene; `blur_step` is in pixels a plane.
-     * Throws std::invalid_argument if blur_step (planes - 1) exceeds max_blur_diameter. Where `stop` was
+    /* `planes` planes even in dioptres span the depths 0 to 1 of the scene; `blur_step` is in pixels a plane.
+     * Throws std::invalid_argument if the blur of anything exceeds max_blur_diameter. Where `stop` was
      * requested, here or in a render call, the pictures are unfinished and of no use. */
     ThinLensRenderer(const Scene &scene, unsigned planes, double blur_step, const std::stop_token &stop = {});
 
@@ -54,6 +54,7 @@ private:
 
     cv::Mat3b sharp_;
     double blur_step_;
+    int nearest_ = 0;
     int farthest_ = 0;
     std::vector<SceneTile> tiles_;
 };
