@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "board.h"
+
+#include <string>
+#include <vector>
+
+namespace dff {
+
+struct Options {
+    Board board;
+    std::string sheet;
+    std::vector<std::string> sources; /* descriptions for gst-launch-1.0 */
+    std::string output = "calibration.yml";
+    std::string check;
+    unsigned boards = 12; /* after which no more are looked for */
+};
+
+/* Takes its own and GStreamer's options. Throws std::invalid_argument with a user's text. */
+Options parse_options(int argc, char **argv);
+
+} // namespace dff
