@@ -5,7 +5,7 @@
  * bright surroundings into a dark place, those planes alone are noisier there and would pass for sharp. n(I), a parabola,
  * goes through the tenth least of all planes' focus at each of BINS brightnesses, weighed by the root of their count; then
  *
- *     F_z <- max(F_z - 1.2 (n(I_z) - mean_z n(I_z)), 0)
+ *     F_z <- max(F_z - (3 - 1.8t) (n(I_z) - mean_z n(I_z)), 0)
  *
  * so that planes are alike in noise while a place keeps what it has over all planes, which the costs go by.
  */
@@ -16,7 +16,7 @@
 #define SHIFT 19   /* of a float's bits, to levels */
 #define LEAST_COUNT 50
 #define WHITE (3 * COLOUR_ONE * 256) /* the three colours' sum */
-#define EXCESS 1.2f
+#define EXCESS(noise) (3.0f - 1.8f * (noise)->t)
 
 /* Of a histogram of `count` values of focus, which a tenth is below. */
 INLINE float tenth_least(const uint *histogram, uint count)
@@ -96,10 +96,10 @@ __kernel void find_curve(__global const short *focus, __global const short *smal
 
 /* evened: F, its sides mirrored. Work-items (1, low height). */
 __kernel void even_noise(__global const short *focus, __global const short *small, __global const float *curve,
-                         __global short *evened, int width, int stride, int planes)
+                         __global const Noise *noise, __global short *evened, int width, int stride, int planes)
 {
     const size_t row = get_global_id(1) * stride + SIDE, picture = get_global_size(1) * stride;
-    const float slope = EXCESS * curve[1], bend = EXCESS * curve[2];
+    const float slope = EXCESS(noise) * curve[1], bend = EXCESS(noise) * curve[2];
     for (int x = 0; x < width; x += 16) {
         int16 sum = 0;
         for (int z = 0; z < planes; z++) {
@@ -107,9 +107,9 @@ __kernel void even_noise(__global const short *focus, __global const short *smal
             const float16 light = READ_WIDE_SHORTS(cells) + READ_WIDE_SHORTS(cells + picture) +
                                   READ_WIDE_SHORTS(cells + 2 * picture);
             const float16 i = clamp(light * (1.0f / WHITE), curve[3], curve[4]);
-            const short16 noise = to_wide_shorts(i * (slope + bend * i));
-            sum += convert_int16(noise);
-            SHORTS(evened + z * picture + row + x) = noise;
+            const short16 excess = to_wide_shorts(i * (slope + bend * i));
+            sum += convert_int16(excess);
+            SHORTS(evened + z * picture + row + x) = excess;
         }
         const short16 mean = to_wide_shorts(convert_float16(sum) / planes);
         for (int z = 0; z < planes; z++) {

@@ -69,6 +69,7 @@ check "sharp picture, 16 bits, planes, colours" test_sharp_blend '*SharpStacks*/
 check "volume at half resolution, 16 bits" test_volume_stages '*/3'
 check "volume at a quarter, planes" test_volume_stages '*/4'
 check "volume at an eighth" test_volume_stages '*/6'
+check "depth that a picture is taken at" test_depth_reach '*'
 check "volume as a whole, colours" test_volume_method '*VolumeShapes*/7'
 check "sweeps averaged, 16 bits, colours, both styles" test_stack_denoiser '*agrees_with_its_twin*:*between_the_rows*'
 check "light-field views, panels and colour beside depth" ../lightfield/test_light_field_renderer \

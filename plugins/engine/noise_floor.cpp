@@ -22,15 +22,16 @@ NoiseFloor::NoiseFloor(CommandQueue &queue, const LowShape &low)
     even_noise_ = program.kernel("even_noise");
 }
 
-const cl::Buffer &NoiseFloor::run(const FocusVolume &focus, const SmallPlanes &small)
+const cl::Buffer &NoiseFloor::run(const FocusVolume &focus, const SmallPlanes &small,
+                                  const NoiseEstimate &noise)
 {
     queue_.begin_stage("noise-floor");
     const double cells = static_cast<double>(low_.width) * low_.height * low_.planes;
     const auto step = static_cast<cl_int>(std::max(std::lround(std::sqrt(cells / looked_at)), 1L));
     queue_.run(find_curve_, {1}, focus.volume(), small.colours(), curve_, low_.width, low_.height,
                low_.stride, low_.planes, step);
-    queue_.run(even_noise_, low_.rows(), focus.volume(), small.colours(), curve_, evened_, low_.width,
-               low_.stride, low_.planes);
+    queue_.run(even_noise_, low_.rows(), focus.volume(), small.colours(), curve_, noise.noise(), evened_,
+               low_.width, low_.stride, low_.planes);
     return evened_;
 }
 

@@ -12,10 +12,8 @@ class NoiseFloor {
 public:
     NoiseFloor(CommandQueue &queue, const LowShape &low);
 
-    static constexpr float quiet = 0.1f; /* t up to which there is nothing to do; QUIET of the kernels */
-
     /* Low pictures short [z], which stay until the next run. */
-    const cl::Buffer &run(const FocusVolume &focus, const SmallPlanes &small);
+    const cl::Buffer &run(const FocusVolume &focus, const SmallPlanes &small, const NoiseEstimate &noise);
 
     const cl::Buffer &curve() const { return curve_; } /* float: c0, c1, c2, the least and the greatest I */
 

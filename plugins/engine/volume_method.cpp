@@ -87,8 +87,7 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
         measure(stack.as_new());
     }
     Stages &s = *stages_;
-    const bool is_noisy = blur_.t > NoiseFloor::quiet;
-    s.cost.run(is_noisy ? s.floor.run(s.focus, s.small) : s.focus.volume(), s.small, s.noise, blur_.step);
+    s.cost.run(s.floor.run(s.focus, s.small, s.noise), s.small, s.noise, blur_.step);
     s.guide.run(s.cost, s.small, s.noise);
     s.filter.run(s.cost.cost(), s.guide.guide(), s.noise);
     s.filter.doubt(s.guide.nearer(), s.noise);

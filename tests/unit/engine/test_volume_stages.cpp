@@ -327,7 +327,7 @@ void VolumeStages::expect_small_planes_and_focus_volume()
 
 void VolumeStages::expect_even_noise()
 {
-    const cl::Buffer &evened = floor_stage.run(focus_stage, small_stage);
+    const cl::Buffer &evened = floor_stage.run(focus_stage, small_stage, noise_stage);
     const auto curve = read_back<float>(queue, floor_stage.curve(), 5);
     const Volume focus = read_shorts(focus_stage.volume(), shape.planes, 32);
     const std::vector<float> expected = twin::noise_curve(focus, read_small());
@@ -336,7 +336,8 @@ void VolumeStages::expect_even_noise()
     const auto at = [](const std::vector<float> &c, float i) { return c[0] + i * (c[1] + i * c[2]); };
     for (const float i : {expected[3], 0.5f * (expected[3] + expected[4]), expected[4]})
         EXPECT_NEAR(at(curve, i), at(expected, i), 0.05f * std::abs(at(expected, i)) + 1.0f);
-    expect_alike(read_shorts(evened, shape.planes, 32), twin::even_noise(focus, read_small(), curve), 0.06f);
+    expect_alike(read_shorts(evened, shape.planes, 32), twin::even_noise(focus, read_small(), curve, noise.t),
+                 0.06f);
 }
 
 void VolumeStages::expect_cost_volume()

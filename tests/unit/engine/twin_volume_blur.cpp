@@ -206,7 +206,7 @@ std::vector<float> noise_curve(const Volume &focus, const Colours &small)
     return curve;
 }
 
-Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve)
+Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve, float t)
 {
     const auto noise_at = [&](int x, int y, unsigned z) {
         const float light = (small[0].at(x, y, z) + small[1].at(x, y, z) + small[2].at(x, y, z)) / 768.0f;
@@ -217,7 +217,7 @@ Volume even_noise(const Volume &focus, const Colours &small, const std::vector<f
         float mean = 0.0f;
         for (unsigned plane = 0; plane < focus.planes; plane++)
             mean += noise_at(x, y, plane) / static_cast<float>(focus.planes);
-        return std::max(focus.at(x, y, z) - 1.2f * (noise_at(x, y, z) - mean), 0.0f);
+        return std::max(focus.at(x, y, z) - (3.0f - 1.8f * t) * (noise_at(x, y, z) - mean), 0.0f);
     });
 }
 
