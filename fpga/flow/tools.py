@@ -10,6 +10,7 @@ archive of Debian instead of the machine's own.
 import fcntl
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 from functools import cache
@@ -171,9 +172,8 @@ def mirror():
         return os.environ["FPGA_MIRROR"]
     if not Path(KEYS).exists():
         raise Unavailable("this machine does not know Debian's keys (package debian-archive-keyring)")
-    listed = subprocess.run(["apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages"],
-                            capture_output=True, text=True, check=False).stdout.split()
-    for address in listed:
-        if address.rstrip("/").endswith("/debian"):
-            return address
+    listed = subprocess.run(["apt-get", "update", "--print-uris"], capture_output=True, text=True, check=False).stdout
+    found = re.search(r"^'(\S+/debian)/dists/", listed, re.MULTILINE)
+    if found:
+        return found.group(1)
     raise Unavailable("this machine has no mirror of Debian; FPGA_MIRROR can name one")
