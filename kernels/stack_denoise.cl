@@ -3,7 +3,7 @@
  *
  * Each plane averaged with the same plane of the sweeps before, tile by tile of 8x8 pixels, as long as nothing moved there:
  *
- *     k <- 1 where the tile or one around it moved, else min(k + 1, frames)      m <- m + (x - m) / k      x <- m
+ *     k <- 1 where the tile or one around it moved in any plane, else min(k + 1, frames)      m <- m + (x - m) / k      x <- m
  *
  * with m the mean of k sweeps. Where a tile is `held`, k, m and x stay as they are: something passes there, and what is
  * behind it is not forgotten. A tile moved where the mean or the mean square of x - m is more than noise makes it. Noise
@@ -96,9 +96,10 @@ inline float variance_at(__global const float *curve, float brightness)
 }
 
 /* Adds to moved[z][tile], which the first component writes anew (`is_first`), where this component's tiles moved. `least` is
- * what is never called motion, `sigmas` how many standard deviations of the two measures noise may reach. */
+ * what is never called motion; noise takes a tile's mean by `most_mean` standard deviations of a sample and its mean square to
+ * `most_square` times the variance. */
 __kernel void judge_tiles(__global const float4 *tiles, __global const uchar *sweeps, __global const float *curve,
-                          __global uchar *moved, int2 count, float samples, float spread, float sigmas, float least,
+                          __global uchar *moved, int2 count, float most_mean, float most_square, float least,
                           int is_first)
 {
     const int tx = (int)get_global_id(0), ty = (int)get_global_id(1), z = (int)get_global_id(2);
@@ -107,24 +108,26 @@ __kernel void judge_tiles(__global const float4 *tiles, __global const uchar *sw
     const long i = ((long)z * count.y + ty) * count.x + tx;
     const float4 tile = tiles[i];
     const float variance = variance_at(curve, tile.z) * (1.0f + 1.0f / max((float)sweeps[i], 1.0f));
-    const float most_mean = sigmas * sqrt(variance * spread / samples) + least;
-    const float most_square = variance * (1.0f + sigmas * sqrt(2.0f * spread / samples)) + least;
-    const uchar is_moved = fabs(tile.x) > most_mean || tile.y > most_square;
+    const uchar is_moved =
+        fabs(tile.x) > most_mean * sqrt(variance) + least || tile.y > most_square * variance + least;
     moved[i] = is_first ? is_moved : moved[i] | is_moved;
 }
 
-/* sweeps[z][tile] becomes k of what average_tiles() does next: by the moved tiles around. frames >= 1. */
+/* sweeps[z][tile] becomes k of what average_tiles() does next: by the tiles around that moved and are not held, in any
+ * plane: planes that are not denoised alike would pass for differently sharp. frames >= 1. */
 __kernel void count_sweeps(__global const uchar *moved, __global const uchar *held, __global uchar *sweeps, int2 count, int frames,
                            ulong wanted)
 {
     const int tx = (int)get_global_id(0), ty = (int)get_global_id(1), z = (int)get_global_id(2);
     if (tx >= count.x || !(wanted >> z & 1) || held[((long)z * count.y + ty) * count.x + tx])
         return;
-    __global const uchar *plane = moved + (long)z * count.y * count.x;
     int is_moved = 0;
-    for (int y = max(ty - 1, 0); y <= min(ty + 1, count.y - 1); y++)
-        for (int x = max(tx - 1, 0); x <= min(tx + 1, count.x - 1); x++)
-            is_moved |= plane[y * count.x + x];
+    for (int other = 0; other < (int)get_global_size(2); other++)
+        for (int y = max(ty - 1, 0); y <= min(ty + 1, count.y - 1); y++)
+            for (int x = max(tx - 1, 0); x <= min(tx + 1, count.x - 1); x++) {
+                const long at = ((long)other * count.y + y) * count.x + x;
+                is_moved |= wanted >> other & 1 && moved[at] && !held[at];
+            }
     const long i = ((long)z * count.y + ty) * count.x + tx;
     sweeps[i] = is_moved ? 1 : min(sweeps[i] + 1, frames); /* 0 before the first sweep */
 }

@@ -4,7 +4,7 @@
  * stack_denoise.cl for CPUs and samples of 8 bits: the same in 32 lanes of 16 bits, and in one pass over the memory, which
  * is what takes the time (a stack of I420 and its means are three times its bytes, and all of it is read and written).
  *
- * A work-item has a strip of `strip` rows of tiles of one plane, from above to below: a row of tiles is judged, then the row
+ * A work-item has a strip of `strip` rows of tiles, from above to below: a row of tiles is judged in all planes, then the row
  * above it averaged while the caches still hold it. Since the strips work in place, the first and the last row of each strip,
  * to which the neighbours look, are judged before all strips (judge_borders).
  *
@@ -114,16 +114,16 @@ INLINE void measure_row(Part part, const int tile, const int rows, int ty, int c
     }
 }
 
-/* most[brightness]: how far a tile's mean, and its mean square, may be off by noise of one sweep; of_sweeps[k]: by how much
- * more where the mean of k sweeps is compared, for either. */
-INLINE void judge_row(__global const float4 *tiles, __global const uchar *sweeps, __global const float2 *most,
-                      __global const float2 *of_sweeps, float least, int count, int is_first, __global uchar *moved)
+/* Adds to moved[] which tiles of a row moved and are not held. most[brightness]: how far a tile's mean, and its mean square,
+ * may be off by noise of one sweep; of_sweeps[k]: by how much more where the mean of k sweeps is compared, for either. */
+INLINE void judge_row(__global const float4 *tiles, __global const uchar *sweeps, __global const uchar *held,
+                      __global const float2 *most, __global const float2 *of_sweeps, float least, int count,
+                      __global uchar *moved)
 {
     for (int tx = 0; tx < count; tx++) {
         const float4 tile = tiles[tx];
         const float2 bound = most[clamp((int)tile.z, 0, BRIGHTNESSES - 1)] * of_sweeps[sweeps[tx]] + least;
-        const uchar is_moved = fabs(tile.x) > bound.x || tile.y > bound.y;
-        moved[tx] = is_first ? is_moved : moved[tx] | is_moved;
+        moved[tx] |= (fabs(tile.x) > bound.x || tile.y > bound.y) && !held[tx];
     }
 }
 
@@ -199,51 +199,58 @@ __kernel void measure_rows(__global uchar *stack, EACH(PLANES_OF) EACH(TILES_OF)
     EACH(MEASURE)
 }
 
-/* Of all components: what a row of tiles is judged by. most[c][brightness], of_sweeps[k]. */
+/* A row of tiles in all planes and components, into moved[][tile]. most[c][brightness], of_sweeps[k]. */
 #define JUDGE(c)                                                                                                       \
     measure_row(PART(c), TILE##c, ROWS##c, ty, count.x, scratch);                                                      \
-    judge_row(scratch, sweeps + row, most + c * BRIGHTNESSES, of_sweeps, least, count.x, c == 0, moved + row);
+    judge_row(scratch, sweeps + tiles, held + tiles, most + c * BRIGHTNESSES, of_sweeps, least, count.x, moved + row);
+#define JUDGE_ROW                                                                                                      \
+    const long row = (long)ty * count.x;                                                                               \
+    for (int tx = 0; tx < count.x; tx++)                                                                               \
+        moved[row + tx] = 0;                                                                                           \
+    for (int z = 0; z < planes; z++) {                                                                                 \
+        const long tiles = ((long)z * count.y + ty) * count.x;                                                         \
+        if (!(wanted >> z & 1))                                                                                        \
+            continue;                                                                                                  \
+        EACH(JUDGE)                                                                                                    \
+    }
 
-/* The first and the last row of tiles of each strip. scratch[work-item][tile]; work-items (strips, planes). */
+/* The first and the last row of tiles of each strip. scratch[work-item][tile]; work-items (strips). */
 __kernel void judge_borders(__global uchar *stack, EACH(PLANES_OF) __global const uchar *sweeps,
                             __global const float2 *most, __global const float2 *of_sweeps, __global uchar *moved,
-                            __global float4 *scratch, int2 count, int strip, float least, ulong wanted)
+                            __global float4 *scratch, __global const uchar *held, int2 count, int planes, int strip,
+                            float least, ulong wanted)
 {
-    const int z = (int)get_group_id(1), first = (int)get_group_id(0) * strip;
-    const int last = min(first + strip, count.y) - 1;
-    if (!(wanted >> z & 1))
-        return;
-    scratch += (long)(z * (int)get_num_groups(0) + (int)get_group_id(0)) * count.x;
+    const int first = (int)get_group_id(0) * strip, last = min(first + strip, count.y) - 1;
+    scratch += (long)get_group_id(0) * count.x;
     for (int ty = first; ty <= last; ty += max(last - first, 1)) {
-        const long row = ((long)z * count.y + ty) * count.x;
-        EACH(JUDGE)
+        JUDGE_ROW
     }
 }
 
 /* parts[work-item][part_stride]; the rest as above. */
 __kernel void denoise_strips(__global uchar *stack, EACH(PLANES_OF) __global uchar *sweeps, __global const float2 *most,
                              __global const float2 *of_sweeps, __global uchar *moved, __global float4 *scratch,
-                             __global short *parts, int part_stride, __global const uchar *held, int2 count, int strip,
-                             float least, int frames, ulong wanted, ulong absent)
+                             __global short *parts, int part_stride, __global const uchar *held, int2 count, int planes,
+                             int strip, float least, int frames, ulong wanted, ulong absent)
 {
-    const int z = (int)get_group_id(1), first = (int)get_group_id(0) * strip;
-    const int end = min(first + strip, count.y), is_wanted = wanted >> z & 1;
-    if (absent >> z & 1)
-        return;
-    const long item = z * (int)get_num_groups(0) + (int)get_group_id(0);
-    scratch += item * count.x;
-    parts += item * part_stride;
+    const int first = (int)get_group_id(0) * strip, end = min(first + strip, count.y);
+    scratch += (long)get_group_id(0) * count.x;
+    parts += (long)get_group_id(0) * part_stride;
     for (int above = first; above < end; above++) {
         const int ty = above + 1;
-        if (is_wanted && ty < end - 1) {
-            const long row = ((long)z * count.y + ty) * count.x;
-            EACH(JUDGE)
+        if (ty < end - 1) {
+            JUDGE_ROW
         }
-        const long tiles = ((long)z * count.y + above) * count.x;
-        if (is_wanted)
-            count_row(moved + (long)z * count.y * count.x, held + tiles, sweeps + tiles, above, count, frames);
+        for (int z = 0; z < planes; z++) {
+            const long tiles = ((long)z * count.y + above) * count.x;
+            const int is_wanted = wanted >> z & 1;
+            if (absent >> z & 1)
+                continue;
+            if (is_wanted)
+                count_row(moved, held + tiles, sweeps + tiles, above, count, frames);
 #define AVERAGE(c)                                                                                                     \
     average_row(PART(c), TILE##c, ROWS##c, above, count.x, held + tiles, sweeps + tiles, is_wanted, parts);
-        EACH(AVERAGE)
+            EACH(AVERAGE)
+        }
     }
 }

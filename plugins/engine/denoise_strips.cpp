@@ -10,7 +10,7 @@ namespace dff {
 namespace {
 
 constexpr uint32_t tile_pixels = 8;
-constexpr cl_int strip_rows = 34;    /* a quarter of 1080 pixels: enough work-items for a few cores */
+constexpr cl_int strip_rows = 23;    /* a sixth of 1080 pixels: enough work-items for a few cores */
 constexpr size_t brightnesses = 256; /* BRIGHTNESSES of the kernels */
 constexpr size_t most_sweeps = 255;
 
@@ -46,7 +46,7 @@ DenoiseStrips::DenoiseStrips(CommandQueue &queue, const StackShape &shape, std::
         const auto tile = static_cast<cl_int>(tile_pixels / c.subsampling * c.channels);
         part_stride_ = std::max(part_stride_, tiles.s[0] * tile);
     }
-    const auto strips = static_cast<size_t>((tiles.s[1] + strip_ - 1) / strip_) * shape.planes;
+    const auto strips = static_cast<size_t>((tiles.s[1] + strip_ - 1) / strip_);
     scratch_ = queue.allocate(strips * static_cast<size_t>(tiles.s[0]) * sizeof(TileDifference));
     shares_ = queue.allocate(strips * static_cast<size_t>(part_stride_) * sizeof(cl_short));
     most_ = queue.allocate(components.size() * brightnesses * sizeof(cl_float2));
@@ -100,7 +100,7 @@ void DenoiseStrips::run_strips(cl::Kernel &kernel, const cl::Buffer &bytes, cons
 {
     cl_uint place = set_parts(kernel, bytes);
     (kernel.setArg(place++, arguments), ...);
-    queue_.run_groups(kernel, {static_cast<size_t>((tiles_.s[1] + strip_ - 1) / strip_), shape_.planes});
+    queue_.run_groups(kernel, {static_cast<size_t>((tiles_.s[1] + strip_ - 1) / strip_)});
 }
 
 void DenoiseStrips::upload(const std::vector<NoiseBounds> &bounds)
@@ -109,8 +109,8 @@ void DenoiseStrips::upload(const std::vector<NoiseBounds> &bounds)
     for (const NoiseBounds &of : bounds)
         for (size_t i = 0; i < brightnesses; i++) {
             const float variance = variance_at(of.curve, static_cast<float>(i) + 0.5F);
-            *next++ = {{of.sigmas * std::sqrt(variance * of.spread / of.samples),
-                        variance * (1.0F + of.sigmas * std::sqrt(2.0F * of.spread / of.samples))}};
+            *next++ = {{most_mean(of.samples, of.spread, of.sigmas) * std::sqrt(variance),
+                        most_square(of.samples, of.spread, of.sigmas) * variance}};
         }
     queue_.commands().enqueueWriteBuffer(most_, CL_FALSE, 0, host_most_.size() * sizeof(cl_float2),
                                          host_most_.data());
@@ -121,10 +121,11 @@ void DenoiseStrips::run(const cl::Buffer &bytes, const cl::Buffer &moved, const 
                         uint32_t frames, uint64_t wanted, uint64_t absent)
 {
     upload(bounds);
-    run_strips(judge_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, tiles_, strip_, least,
+    const auto planes = static_cast<cl_int>(shape_.planes);
+    run_strips(judge_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, held, tiles_, planes, strip_, least,
                static_cast<cl_ulong>(wanted));
     run_strips(denoise_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, shares_, part_stride_, held,
-               tiles_, strip_, least, static_cast<cl_int>(frames), static_cast<cl_ulong>(wanted),
+               tiles_, planes, strip_, least, static_cast<cl_int>(frames), static_cast<cl_ulong>(wanted),
                static_cast<cl_ulong>(absent));
 }
 

@@ -78,6 +78,18 @@ float variance_at(const NoiseCurve &curve, float brightness)
     return std::lerp(curve[i], curve[i + 1], place - static_cast<float>(i));
 }
 
+float most_mean(float samples, float spread, float sigmas)
+{
+    return sigmas * std::sqrt(spread / samples);
+}
+
+float most_square(float samples, float spread, float sigmas)
+{
+    const float part = 2.0F / 9.0F * spread / samples;
+    const float root = 1.0F - part + sigmas * (5.0F / 6.0F) * std::sqrt(part);
+    return root * root * root;
+}
+
 NoiseCurve noise_of_plane(const StackView &view, size_t index, uint32_t z)
 {
     const Component component = view.shape.components()[index];

@@ -25,6 +25,12 @@ struct TileDifference {
     float unused;
 };
 
+/* How far noise may take a tile of `samples`: its mean by so many standard deviations of a sample, its mean
+ * square to so many times its variance (chi-squared, after Wilson and Hilferty). `sigmas` of the mean, and
+ * five where it has six of the square; `spread` as of spread_of_tiles(). */
+float most_mean(float samples, float spread, float sigmas);
+float most_square(float samples, float spread, float sigmas);
+
 /* Noise of one picture by itself (after Immerkaer 1996): the lower quartile of |[1 -2 1] x [1 -2 1]| over the
  * pixels of a brightness, so that only three quarters of them may have texture. It is too high where more
  * have, and too low where neighbouring pixels are alike (demosaicing, JPEG). `component` of plane z. */

@@ -24,6 +24,23 @@ constexpr float most_over_single = 4.0F; /* noise between sweeps has at most thi
 /* Of 256 brightnesses: differences between sweeps that are never called motion, as rounding makes them. */
 constexpr float least_change = 0.3F;
 
+/* Those that differ by what noise explains: a tile that moved tells nothing of how alike noise is. */
+std::vector<TileDifference> quiet_tiles(std::span<const TileDifference> tiles,
+                                        std::span<const uint8_t> sweeps, const NoiseCurve &noise,
+                                        uint32_t sample_bytes)
+{
+    constexpr float most = 1.5F; /* of the variance */
+    const float unit = sample_bytes == 2 ? 256.0F : 1.0F;
+    std::vector<TileDifference> quiet;
+    for (size_t i = 0; i < tiles.size(); i++) {
+        const float variance = variance_at(noise, tiles[i].brightness / unit) *
+                               (1.0F + 1.0F / std::max(static_cast<float>(sweeps[i]), 1.0F));
+        if (tiles[i].square < most * variance)
+            quiet.push_back(tiles[i]);
+    }
+    return quiet;
+}
+
 } // namespace
 
 /* One component of all planes: how its tiles look, and what is known of it. */
@@ -254,12 +271,14 @@ void StackDenoiser::measure()
 void StackDenoiser::judge(const DenoiseParameters &parameters)
 {
     const cl::NDRange size(static_cast<size_t>(tiles_.s[0]), static_cast<size_t>(tiles_.s[1]), shape_.planes);
+    const float sigmas = sigmas_of_noise * parameters.strength;
     cl_int is_first = 1;
     for (const auto &part : components_) {
         queue_.commands().enqueueWriteBuffer(part->curve, CL_FALSE, 0, sizeof(NoiseCurve),
                                              part->noise.data());
-        queue_.run(part->judge, size, part->tiles, sweeps_, part->curve, moved_, tiles_, part->samples,
-                   part->spread, sigmas_of_noise * parameters.strength, part->least(), is_first);
+        queue_.run(part->judge, size, part->tiles, sweeps_, part->curve, moved_, tiles_,
+                   most_mean(part->samples, part->spread, sigmas),
+                   most_square(part->samples, part->spread, sigmas), part->least(), is_first);
         is_first = 0;
     }
 }
@@ -315,7 +334,9 @@ void StackDenoiser::learn_noise()
         for (size_t i = 0; i < single.size(); i++)
             part->noise[i] =
                 std::lerp(std::min((*between)[i], most_over_single * single[i]), part->noise[i], kept);
-        part->spread = std::lerp(spread_of_tiles(part->host_tiles, part->samples), part->spread, kept);
+        const auto quiet = quiet_tiles(part->host_tiles, sweeps, part->noise, part->component.sample_bytes);
+        if (quiet.size() * 10 >= part->host_tiles.size())
+            part->spread = std::lerp(spread_of_tiles(quiet, part->samples), part->spread, kept);
     }
     has_learned_ = true;
 }

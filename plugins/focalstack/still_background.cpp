@@ -21,7 +21,8 @@ constexpr int most_sweeps = 16;     /* that the background is the mean of */
 constexpr float halts = 2.0F;       /* sweeps that something must stand still to become background */
 constexpr float first_halts = 0.7F; /* the same, where no background was known */
 constexpr int reach = 31;           /* of an object: what is farther from its silhouettes is not believed */
-constexpr double whole = 0.5;       /* part of the picture that moves where the camera does, or at a cut */
+constexpr double whole = 0.3;       /* part of the picture that moves where the camera does, or at a cut; */
+constexpr double still_whole = 0.1; /* the same, where it did so in the sweep before */
 
 cv::Mat square(int side)
 {
@@ -191,6 +192,7 @@ Silhouettes StillBackground::follow(const SmallStack &sweep, const Noise &noise)
             masks->emplace_back(cv::Mat1b::zeros(sweep.size()));
     if (planes_.empty()) {
         begin(sweep);
+        was_whole_ = false;
         return found;
     }
     for_each_plane(sweep.planes(),
@@ -203,7 +205,9 @@ Silhouettes StillBackground::follow(const SmallStack &sweep, const Noise &noise)
     for (const cv::Mat1b &wide : found.wide)
         any |= wide;
     found.moved = static_cast<double>(cv::countNonZero(any)) / static_cast<double>(any.total());
-    if (found.moved > whole) {
+    found.is_whole = found.moved > (was_whole_ ? still_whole : whole);
+    was_whole_ = found.is_whole;
+    if (found.is_whole) {
         begin(sweep);
         return found;
     }

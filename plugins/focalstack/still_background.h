@@ -13,6 +13,7 @@ struct Silhouettes {
     std::vector<cv::Mat1b> held;  /* wide, and what stood there before is known */
     std::vector<cv::Mat1b> known; /* what stands there is known, whether something is before it or not */
     double moved = 0.0;           /* part of the picture that is wide in any plane */
+    bool is_whole = false;        /* the camera moved, or the scene is another: nothing is held or known */
 };
 
 /* What stands still, plane by plane (the same plane has the same blur), at SmallStack's size. A place that
@@ -47,6 +48,7 @@ private:
                       const cv::Mat1b &wide, cv::Mat1b &held);
 
     std::vector<Plane> planes_;
+    bool was_whole_ = false;
 };
 
 } // namespace dff

@@ -11,7 +11,6 @@ namespace dff {
 namespace {
 
 constexpr int tile_pixels = 8; /* of the denoiser */
-constexpr double most_moved = 0.5;
 
 /* Pixels of a component's picture that may change in one plane, and how they do. */
 struct ObjectsOfComponent {
@@ -185,7 +184,7 @@ void SweepFollower::follow_component(size_t c, const std::vector<std::vector<cv:
 
 void SweepFollower::follow(const StackView &view, std::span<std::byte> memory, StackDenoiser &denoiser)
 {
-    if (silhouettes_.moved <= 0.0 || silhouettes_.moved > most_moved)
+    if (silhouettes_.moved <= 0.0 || silhouettes_.is_whole)
         return;
     const ObjectMotion motion = find_motion(small_, silhouettes_);
     if (motion.where.empty())
