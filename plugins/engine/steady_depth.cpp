@@ -41,6 +41,13 @@ void sum_cells(const std::byte *first_row, size_t stride, const Component &compo
     }
 }
 
+/* lround() keeps compilers from doing eight at once. */
+inline uint16_t rounded(float value)
+{
+    constexpr float half = 0.5F;
+    return static_cast<uint16_t>(static_cast<int>(value + half));
+}
+
 /* Two threads at once, each with half of the rows. */
 void in_halves(uint32_t rows, const std::function<void(uint32_t, uint32_t)> &work)
 {
@@ -134,14 +141,13 @@ void SteadyDepth::judge()
         changed[i] = tiles_[i].square >
                      variance * (1.0F + sigmas * std::sqrt(2.0F / samples_)) + least_change * unit * unit;
     }
-    const auto across = static_cast<int>(tiles_across_), down = static_cast<int>(tiles_down_);
-    for (int ty = 0; ty < down; ty++)
-        for (int tx = 0; tx < across; tx++) {
+    for (uint32_t ty = 0; ty < tiles_down_; ty++)
+        for (uint32_t tx = 0; tx < tiles_across_; tx++) {
             uint8_t any = is_new_;
-            for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, down - 1); y++)
-                for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, across - 1); x++)
-                    any |= changed[static_cast<size_t>(y * across + x)];
-            moved_[static_cast<size_t>(ty * across + tx)] = any;
+            for (uint32_t y = std::max(ty, 1U) - 1; y < std::min(ty + 2, tiles_down_); y++)
+                for (uint32_t x = std::max(tx, 1U) - 1; x < std::min(tx + 2, tiles_across_); x++)
+                    any |= changed[size_t{y} * tiles_across_ + x];
+            moved_[size_t{ty} * tiles_across_ + tx] = any;
         }
 }
 
@@ -153,8 +159,10 @@ void SteadyDepth::follow(uint32_t first_row, uint32_t end)
     std::vector<float> shares(cells_across_);
     for (uint32_t y = first_row * tile_cells; y < end * tile_cells; y++) {
         const uint8_t *sweeps = sweeps_.data() + size_t{y / tile_cells} * tiles_across_;
-        for (uint32_t x = 0; x < tiles_across_ * tile_cells; x++)
-            shares[x] = 1.0F / static_cast<float>(sweeps[x / tile_cells]);
+        for (uint32_t x = 0; x < tiles_across_ * tile_cells; x++) {
+            const uint32_t tx = x / tile_cells;
+            shares[x] = 1.0F / static_cast<float>(sweeps[tx]);
+        }
         for (uint32_t z = 0; z < shape_.planes; z++) {
             float *means = means_.data() + (size_t{z} * cells_down_ + y) * cells_across_;
             const float *cells = cells_.data() + (size_t{z} * cells_down_ + y) * cells_across_;
@@ -179,7 +187,7 @@ void SteadyDepth::average_pixel(uint16_t &depth, size_t i, bool is_moved, const 
         stacks_[i] = std::min<uint8_t>(stacks_[i] + 1, most_stacks);
         mean += (now - mean) / static_cast<float>(stacks_[i]);
     }
-    depth = static_cast<uint16_t>(static_cast<int>(mean + 0.5F));
+    depth = rounded(mean);
 }
 
 /* Eight pixels of a row at once, where all of them go on as they did; else false. */
@@ -204,7 +212,7 @@ bool SteadyDepth::average_run(uint16_t *depth, size_t i, float jump)
     const float share = 1.0F / static_cast<float>(more);
     for (int x = 0; x < 8; x++) {
         means[x] += (static_cast<float>(depth[x]) - means[x]) * share;
-        depth[x] = static_cast<uint16_t>(static_cast<int>(means[x] + 0.5F));
+        depth[x] = rounded(means[x]);
     }
     std::memset(stacks, more, 8);
     return true;

@@ -40,10 +40,10 @@ void take_means(const cv::Mat &picture, int channel, float scale, cv::Mat1f &mea
                 columns[x] = static_cast<typename SumOf<Sample>::Type>(columns[x] + row[x * stride]);
         }
         float *out = means[y];
-        for (int x = 0; x < means.cols; x++) {
+        for (size_t x = 0; x * side < columns.size(); x++) {
             uint32_t sum = 0;
-            for (int i = 0; i < side; i++)
-                sum += columns[static_cast<size_t>(x * side + i)];
+            for (size_t i = 0; i < side; i++)
+                sum += columns[x * side + i];
             out[x] = static_cast<float>(sum) * scale;
         }
     }
