@@ -412,8 +412,11 @@ static bool load_calibration(GstDffDepth *self)
     State &state = *self->state;
     const std::string file = settings_of(state).calibration;
     try {
-        state.depth.set_calibration(file.empty() ? std::nullopt
-                                                 : std::optional(dff::read_camera_calibration(file)));
+        if (file.empty())
+            state.depth.set_calibration(std::nullopt, std::nullopt);
+        else
+            state.depth.set_calibration(dff::read_camera_calibration(file),
+                                        dff::read_focus_calibration(file));
         return true;
     } catch (const std::runtime_error &error) {
         GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));

@@ -140,7 +140,9 @@ void install_depth_properties(GObjectClass *object_class)
         g_param_spec_string("calibration", "Calibration",
                             "File of the camera's calibration as OpenCV writes it (camera_matrix, "
                             "distortion_coefficients, image_width, image_height), for whole pictures of any "
-                            "size: the GstDepthMeta tells the intrinsics; empty: they are unknown",
+                            "size: the GstDepthMeta tells the intrinsics; a file of dff-calibrate also says "
+                            "where the planes are sharp, "
+                            "curved field included, whatever the stack says; empty: nothing is known",
                             "", ready));
     install(
         property::Steady,

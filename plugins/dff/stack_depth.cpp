@@ -81,14 +81,39 @@ void StackDepth::prepare()
     encoder_.reset();
 }
 
+PlanePositions StackDepth::positions_of(GstBuffer *stack) const
+{
+    PlanePositions positions = plane_positions(stack_, stack);
+    if (!focus_)
+        return positions;
+    if (focus_->vergences.size() != stack_.planes)
+        throw UnknownPositions("The calibration has " + std::to_string(focus_->vergences.size()) +
+                               " planes and the stack " + std::to_string(stack_.planes) +
+                               ": make one of this sweep with dff-calibrate");
+    positions.powers = focus_->vergences;
+    return positions;
+}
+
+DepthEncoder StackDepth::flat_encoder(const PlanePositions &positions)
+{
+    field_.reset();
+    const DepthEncoder encoder = make_encoder(settings_.unit, stack_.planes, positions);
+    const DepthUnit unit = encoder.scale().unit;
+    if (!focus_ || focus_->is_flat() || (unit != DepthUnit::Dioptre && unit != DepthUnit::Millimetre))
+        return encoder;
+    field_.emplace(*focus_, static_cast<unsigned>(GST_VIDEO_INFO_WIDTH(&stack_.frame)),
+                   static_cast<unsigned>(GST_VIDEO_INFO_HEIGHT(&stack_.frame)), unit);
+    return make_encoder(GST_DEPTH_UNIT_DIOPTRE, stack_.planes, positions);
+}
+
 std::optional<std::string> StackDepth::take_positions(GstBuffer *stack)
 {
     try {
-        PlanePositions positions = plane_positions(stack_, stack);
+        PlanePositions positions = positions_of(stack);
         if (encoder_ && positions == positions_)
             return std::nullopt;
         steady_.reset();
-        encoder_ = make_encoder(settings_.unit, stack_.planes, positions);
+        encoder_ = flat_encoder(positions);
         positions_ = std::move(positions);
         engine_->set_encoder(*encoder_);
         return std::nullopt;
@@ -106,6 +131,9 @@ bool StackDepth::compute(const StackView &view, const DepthOutputs &outputs)
     if (!engine_->compute(view, outputs))
         return false;
     keep_steady(view, outputs.depth);
+    for (const OutputPicture &map : {outputs.depth, outputs.sparse})
+        if (field_ && map.pixels)
+            field_->apply(map.pixels, map.stride);
     return true;
 }
 
@@ -128,6 +156,14 @@ GstDepthInfo StackDepth::facts(GstBuffer *stack, guint64 index) const
 {
     GstDepthInfo depth =
         encoder_ ? depth_info(*encoder_, positions_) : depth_info(DepthEncoder::index(stack_.planes), {});
+    if (encoder_ && field_) {
+        depth.unit =
+            field_->scale().unit == DepthUnit::Dioptre ? GST_DEPTH_UNIT_DIOPTRE : GST_DEPTH_UNIT_MILLIMETRE;
+        depth.scale = field_->scale().scale;
+        depth.offset = field_->scale().offset;
+        depth.near = field_->near();
+        depth.far = field_->far();
+    }
     depth.sequence = index;
     if (const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack)) {
         GstFocusInfo focus;

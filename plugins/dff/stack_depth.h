@@ -6,6 +6,7 @@
 #include "engine/steady_depth.h"
 #include "gstcl/depth_facts.h"
 #include "optics/camera_calibration.h"
+#include "optics/curved_field.h"
 
 #include <future>
 #include <memory>
@@ -29,8 +30,13 @@ public:
      * first stack still arrive: kernels take their time to be loaded, which a live source must not feel.
      * Throws EngineError if the device has no room for them. */
     void set_stack(const GstFocalStackInfo &stack);
-    /* What the facts say of the camera. */
-    void set_calibration(std::optional<CameraCalibration> calibration) { calibration_ = calibration; }
+    /* What the facts say of the camera, and where its planes are sharp, if that is known better than by the
+     * stacks. */
+    void set_calibration(std::optional<CameraCalibration> calibration, std::optional<FocusCalibration> focus)
+    {
+        calibration_ = calibration;
+        focus_ = std::move(focus);
+    }
     const GstFocalStackInfo &stack() const { return stack_; }
 
     /* Whether the next stack to be computed is the first one of its engine. */
@@ -64,6 +70,8 @@ public:
 
 private:
     void keep_steady(const StackView &view, const OutputPicture &depth);
+    PlanePositions positions_of(GstBuffer *stack) const;
+    DepthEncoder flat_encoder(const PlanePositions &positions);
 
     std::shared_ptr<Device> device_;
     DepthSettings settings_;
@@ -73,6 +81,8 @@ private:
     std::optional<DepthEncoder> encoder_;
     PlanePositions positions_;
     std::optional<CameraCalibration> calibration_;
+    std::optional<FocusCalibration> focus_;
+    std::optional<CurvedField> field_;  /* of encoder_, which then is as if it were flat */
     std::optional<SteadyDepth> steady_; /* while it is wanted */
     DepthJumps jumps_{};                /* of encoder_ */
     bool is_live_ = false;

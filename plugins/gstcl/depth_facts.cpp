@@ -80,6 +80,9 @@ DepthEncoder encoder_of(const GstDepthInfo &depth, unsigned planes, const PlaneP
         for (unsigned z = 0; z < planes; z++)
             known.powers.push_back(even.power(z));
     }
+    const bool says_its_ends = depth.unit == GST_DEPTH_UNIT_DIOPTRE && depth.near > depth.far; /* NAN: no */
+    if (says_its_ends && !known.powers.empty())
+        return DepthEncoder::dioptre(SweepPlan::at(known.powers), depth.near, depth.far);
     return make_encoder(depth.unit, planes, known);
 }
 

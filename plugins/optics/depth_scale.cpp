@@ -42,8 +42,13 @@ DepthEncoder DepthEncoder::index(unsigned planes)
 
 DepthEncoder DepthEncoder::dioptre(const SweepPlan &plan)
 {
-    const double step = (plan.far() - plan.near()) / steps;
-    DepthEncoder encoder(plan.planes(), {DepthUnit::Dioptre, step, plan.near() - step});
+    return dioptre(plan, plan.near(), plan.far());
+}
+
+DepthEncoder DepthEncoder::dioptre(const SweepPlan &plan, double near, double far)
+{
+    const double step = (far - near) / steps;
+    DepthEncoder encoder(plan.planes(), {DepthUnit::Dioptre, step, near - step});
     encoder.plan_ = plan;
     return encoder;
 }

@@ -37,6 +37,9 @@ public:
     /* pixel = 1 + round(65534 (near - d) / (near - far)), d the vergence at z */
     static DepthEncoder dioptre(const SweepPlan &plan);
 
+    /* The same for maps whose pixels go from `near` to `far` dioptres, which need not be the plan's ends. */
+    static DepthEncoder dioptre(const SweepPlan &plan, double near, double far);
+
     /* pixel = distance in whole millimetres, from 1 up, saturating at 65535 (infinity cannot be said). */
     static DepthEncoder millimetre(const SweepPlan &plan);
 

@@ -32,6 +32,17 @@ TEST(DepthFacts, what_is_written_can_be_read_in_every_unit)
     }
 }
 
+TEST(DepthFacts, a_map_may_reach_beyond_the_planes)
+{
+    const PlanePositions positions{{4.0, 3.0, 2.0, 1.0}, {}};
+    GstDepthInfo depth = depth_info(make_encoder(GST_DEPTH_UNIT_DIOPTRE, 4, positions), positions);
+    depth.near = 4.5;
+    depth.far = 0.5;
+    const DepthEncoder read = encoder_of(depth, 4, positions);
+    EXPECT_NEAR(read.decode(1 + 65534 * 2 / 4).value(), 1.5, 1e-3); /* 2.5 dioptres */
+    EXPECT_NEAR(read.decode(1).value(), 0.0, 1e-9);
+}
+
 TEST(DepthFacts, a_reader_without_powers_takes_the_planes_as_even)
 {
     const PlanePositions even{{4.0, 3.0, 2.0, 1.0}, {}};
