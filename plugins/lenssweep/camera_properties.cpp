@@ -32,7 +32,8 @@ enum {
     PROP_LENS_PROFILE,
     PROP_RUN_LINE,
     PROP_SYNC_LINE,
-    PROP_FEATURES
+    PROP_FEATURES,
+    PROP_CALIBRATION
 };
 
 std::string *text_property(dff::CaptureSettings &settings, guint id)
@@ -52,6 +53,8 @@ std::string *text_property(dff::CaptureSettings &settings, guint id)
         return &settings.sync_line;
     case PROP_FEATURES:
         return &settings.features;
+    case PROP_CALIBRATION:
+        return &settings.calibration;
     default:
         return nullptr;
     }
@@ -91,6 +94,11 @@ void install_texts(GObjectClass *klass)
          "GPIO line on which the sequencer pulses at plane 0, by name or as gpiochip0:5", ""},
         {PROP_FEATURES, "features", "Features",
          "More features of the camera, set before it starts: \"Name=Value Name=Value\"", ""},
+        {PROP_CALIBRATION, "calibration", "Calibration",
+         "File of dff-calibrate that says where the planes are sharp, whatever near, far, powers or the lens "
+         "say; "
+         "empty: they say it",
+         ""},
     };
     for (const Text &text : texts)
         g_object_class_install_property(

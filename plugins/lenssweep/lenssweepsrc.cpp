@@ -48,6 +48,7 @@
  */
 #include "lenssweepsrc.h"
 
+#include "calibrated_powers.h"
 #include "lenssweepsrc_private.h"
 
 #include <exception>
@@ -136,6 +137,7 @@ static gboolean start(GstBaseSrc *source)
     state.failed = false;
     try {
         put_settings(self, properties.settings());
+        state.calibrated_powers = calibrated_powers(state.settings.calibration, state.settings.plan.planes());
         auto capture = std::make_shared<dff::SweepCapture>(state.settings, capture_log(self));
         GST_INFO_OBJECT(self, "camera %s, lens %s, run-line %s, sync-line %s",
                         capture->camera().title().c_str(), state.settings.lens.c_str(),

@@ -153,6 +153,13 @@ static void report(GstLensSweepSrc *self)
     state.missing = missing;
 }
 
+static double power_of(const GstLensSweepSrcState &state, unsigned plane)
+{
+    if (!state.calibrated_powers.empty())
+        return state.calibrated_powers.at(plane);
+    return state.capture->calibrated() ? state.capture->plan().power(plane) : NAN;
+}
+
 static GstBuffer *make_buffer(GstLensSweepSrc *self, dff::CapturedPlane plane)
 {
     GstLensSweepSrcState &state = *self->state;
@@ -166,7 +173,7 @@ static GstBuffer *make_buffer(GstLensSweepSrc *self, dff::CapturedPlane plane)
     const PlaneOutput output{
         state.format,
         capture.plan().planes(),
-        capture.calibrated() ? capture.plan().power(plane.plane) : NAN,
+        power_of(state, plane.plane),
         capture.code(plane.plane),
         static_cast<GstClockTime>(state.settings.exposure_us * 1000),
         static_cast<GstClockTime>(1e9 / state.settings.frame_rate()),

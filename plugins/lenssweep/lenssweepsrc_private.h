@@ -37,6 +37,7 @@ struct GstLensSweepSrcState {
     bool running = false;
     guint64 missing = 0; /* planes that were reported */
     GstCaps *clock_caps = nullptr;
+    std::vector<double> calibrated_powers; /* dioptres, a plane each; empty without a calibration */
 };
 
 struct _GstLensSweepSrc {

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sweep_tagger.h"
 
+#include "calibrated_powers.h"
+
 #include "lens/found_lenses.h"
 
 #include <cmath>
@@ -21,7 +23,8 @@ dff::SweepPlan plan_of(const SweepProperties &sweep)
 } // namespace
 
 SweepTagger::SweepTagger(const TagSettings &settings, const FindProperty &find_property)
-    : settings_(settings), plan_(plan_of(settings.stage.counted(settings.sweep)))
+    : settings_(settings), plan_(plan_of(settings.stage.counted(settings.sweep))),
+      calibrated_powers_(calibrated_powers(settings.calibration, plan_.planes()))
 {
     auto lens =
         dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile, nullptr, find_property});
@@ -156,6 +159,8 @@ std::string SweepTagger::sync_warning() const
 
 double SweepTagger::power(unsigned plane) const
 {
+    if (!calibrated_powers_.empty())
+        return calibrated_powers_.at(plane);
     const bool lens_knows = step_ ? step_->calibrated() : has_sequencer_;
     const bool known = lens_knows || (settings_.sweep.has_powers() && !step_);
     return known ? plan_.power(plane) : NAN;

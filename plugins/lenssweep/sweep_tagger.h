@@ -41,7 +41,8 @@ public:
 
     unsigned planes() const { return plan_.planes(); }
 
-    /* Vergence in dioptres; NAN if neither the user says it nor a lens that is moved here. */
+    /* Vergence in dioptres; NAN if neither the user says it, nor a calibration, nor a lens that is moved
+     * here. */
     double power(unsigned plane) const;
 
     /* Of a microscope's stage, in micrometres; NAN if the user does not say it. */
@@ -61,6 +62,7 @@ private:
 
     TagSettings settings_;
     dff::SweepPlan plan_;
+    std::vector<double> calibrated_powers_; /* by a file; empty: there is none */
     bool has_sequencer_ = false;
     unsigned unlabelled_ = 0; /* frames in a row, as is the next one */
     unsigned untimed_ = 0;

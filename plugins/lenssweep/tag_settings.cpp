@@ -17,6 +17,7 @@ enum {
     PROP_TIMESTAMP_DELAY,
     PROP_POSITIONS,
     PROP_STEP_UM,
+    PROP_CALIBRATION,
 };
 
 constexpr auto flags =
@@ -108,6 +109,11 @@ void install_tag_properties(GObjectClass *klass)
             "that stamp a frame when it was read out need the exposure and the readout here",
             0, 10 * GST_SECOND, defaults.timestamp_delay_ns, flags));
     install_stage_properties(klass, defaults.stage);
+    install_string(
+        klass, PROP_CALIBRATION, "calibration", "Calibration",
+        "File of dff-calibrate that says where the planes are sharp, whatever near, far, powers or the "
+        "lens say; empty: they say it",
+        defaults.calibration.c_str());
 }
 
 bool set_tag_property(TagSettings &settings, guint id, const GValue *value)
@@ -136,6 +142,9 @@ bool set_tag_property(TagSettings &settings, guint id, const GValue *value)
         return true;
     case PROP_STEP_UM:
         settings.stage.step_um = g_value_get_double(value);
+        return true;
+    case PROP_CALIBRATION:
+        settings.calibration = text_of(value);
         return true;
     default:
         return set_sweep_property(settings.sweep, id, value);
@@ -168,6 +177,9 @@ bool get_tag_property(const TagSettings &settings, guint id, GValue *value)
         return true;
     case PROP_STEP_UM:
         g_value_set_double(value, settings.stage.step_um);
+        return true;
+    case PROP_CALIBRATION:
+        g_value_set_string(value, settings.calibration.c_str());
         return true;
     default:
         return get_sweep_property(settings.sweep, id, value);

@@ -20,6 +20,7 @@ GType gst_lens_sweep_tag_mode_get_type();
 struct TagSettings {
     SweepProperties sweep{.near = 0.0, .far = 0.0, .powers = {}}; /* nobody invents distances */
     StagePositions stage;
+    std::string calibration;
     GstLensSweepTagMode mode = GST_LENS_SWEEP_TAG_MODE_CYCLE;
     std::string lens = "none";
     std::string lens_profile;

@@ -56,6 +56,7 @@ struct CaptureSettings {
     std::string run_line;
     std::string sync_line;
     std::string features;
+    std::string calibration; /* file that says where the planes are sharp */
 
     double frame_rate() const { return rate * plan.planes(); }
 };

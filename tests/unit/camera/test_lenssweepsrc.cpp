@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <thread>
+#include <unistd.h>
 
 namespace {
 
@@ -84,6 +85,23 @@ std::string warning_of(const std::string &description)
 }
 
 } // namespace
+
+TEST(LensSweepSrc, a_calibration_knows_better_where_planes_are)
+{
+    const std::string file = testing::TempDir() + "focus" + std::to_string(getpid()) + ".yml";
+    g_file_set_contents(
+        file.c_str(),
+        "%YAML:1.0\n---\nfocus:\n   vergences: [ 3., 1.9, 1.2, 0.1 ]\n   field: [ 0., 0., 0. ]\n", -1,
+        nullptr);
+    Pipeline pipeline(camera + "num-buffers=8 calibration=" + file + " " + out);
+    pipeline.set_state(GST_STATE_PLAYING);
+    const auto samples = pipeline.pull_all("out");
+    EXPECT_EQ(samples.size(), 8U);
+    const double powers[] = {3.0, 1.9, 1.2, 0.1};
+    for (const auto &sample : samples)
+        EXPECT_DOUBLE_EQ(focus_of(sample)->power, powers[focus_of(sample)->plane]);
+    unlink(file.c_str());
+}
 
 TEST(LensSweepSrc, planes_follow_each_other)
 {
@@ -333,7 +351,8 @@ TEST(LensSweepSrc, errors_say_what_to_do)
     EXPECT_NE(error("trigger=free-run lens=warp:drive").find("fpga"), std::string::npos);
     EXPECT_NE(error("trigger=free-run features=NoSuch=1").find("NoSuch"), std::string::npos);
     EXPECT_NE(error("trigger=free-run sync-line=SYNC").find("trigger=line"), std::string::npos);
-    EXPECT_NE(error("trigger=free-run lens-profile=/no/lens.yaml").find("lens that is moved"), std::string::npos);
+    EXPECT_NE(error("trigger=free-run lens-profile=/no/lens.yaml").find("lens that is moved"),
+              std::string::npos);
 }
 
 TEST(LensSweepSrc, an_error_is_the_only_one)

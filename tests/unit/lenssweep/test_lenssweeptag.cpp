@@ -133,6 +133,20 @@ TEST_F(Tag, positions_that_nobody_said_are_not_known)
     EXPECT_TRUE(std::isnan(push(new_frame()).position_um));
 }
 
+TEST_F(Tag, a_calibration_knows_better_where_planes_are)
+{
+    const std::string file = testing::TempDir() + "focus" + std::to_string(getpid()) + ".yml";
+    g_file_set_contents(file.c_str(),
+                        "%YAML:1.0\n---\nfocus:\n   vergences: [ 3., 1.9, 1.2 ]\n   field: [ 0., 0., 0. ]\n",
+                        -1, nullptr);
+    start(("lenssweeptag planes=3 near=5 far=1 calibration=" + file).c_str());
+    for (const double power : {3.0, 1.9, 1.2, 3.0})
+        EXPECT_DOUBLE_EQ(push(new_frame()).power, power);
+    Pipeline other("videotestsrc ! lenssweeptag planes=4 calibration=" + file + " ! fakesink");
+    EXPECT_NE(other.run().find("3 planes and the sweep 4"), std::string::npos);
+    g_unlink(file.c_str());
+}
+
 TEST_F(Tag, pixels_are_not_copied_even_of_a_buffer_of_others)
 {
     start();
