@@ -112,13 +112,14 @@ GenicamLens::Readiness GenicamLens::readiness(const std::string &status)
     if (value == "Ready" || value == "NotBusy" || value == "Idle") {
         return Readiness::Ready;
     }
-    if (value == "NotInitialized") {
-        return Readiness::NotInitialized;
+    if (value == "NotConnected") {
+        return Readiness::NotConnected;
     }
-    return value == "Error" || value == "NotConnected" ? Readiness::Failed : Readiness::Busy;
+    return value == "Error" ? Readiness::Failed : Readiness::Busy;
 }
 
-bool GenicamLens::wait_ready(const std::string &status, const std::stop_token &stop)
+/* `connecting`: a lens that is not connected may be so in a moment. */
+bool GenicamLens::wait_ready(const std::string &status, const std::stop_token &stop, bool connecting)
 {
     if (!access([&] { return camera_.has(status); })) {
         return !stop.stop_requested();
@@ -129,10 +130,11 @@ bool GenicamLens::wait_ready(const std::string &status, const std::stop_token &s
         if (now == Readiness::Ready) {
             return !stop.stop_requested();
         }
-        if (now == Readiness::Failed || std::chrono::steady_clock::now() >= deadline) {
+        const bool failed = now == Readiness::Failed || (now == Readiness::NotConnected && !connecting);
+        if (failed || std::chrono::steady_clock::now() >= deadline) {
             throw LensError("the lens in the camera " +
-                            std::string(now == Readiness::Failed ? "has failed" : "does not come to rest") +
-                            ": " + status + " is " + access([&] { return camera_.get_enumeration(status); }));
+                            std::string(failed ? "has failed" : "does not come to rest") + ": " + status +
+                            " is " + access([&] { return camera_.get_enumeration(status); }));
         }
         if (!sleep_until(std::chrono::steady_clock::now() + poll_interval, stop)) {
             return false;
@@ -152,7 +154,7 @@ void GenicamLens::start()
     for (const Preparation &step : preparations) {
         if (needs(step.command, step.status)) {
             access([&] { camera_.execute(step.command); });
-            wait_ready(step.status, {});
+            wait_ready(step.status, {}, true);
         }
     }
 }
@@ -176,7 +178,7 @@ void GenicamLens::move_to(unsigned plane)
 
 bool GenicamLens::wait_settled(const std::stop_token &stop)
 {
-    return wait_ready(focus_status, stop);
+    return wait_ready(focus_status, stop, false);
 }
 
 } // namespace dff

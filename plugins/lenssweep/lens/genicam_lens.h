@@ -36,11 +36,11 @@ public:
     bool wait_settled(const std::stop_token &stop) override;
 
 private:
-    enum class Readiness { Ready, Busy, NotInitialized, Failed };
+    enum class Readiness { Ready, Busy, NotConnected, Failed };
 
     Readiness readiness(const std::string &status);
     bool needs(const std::string &command, const std::string &status);
-    bool wait_ready(const std::string &status, const std::stop_token &stop);
+    bool wait_ready(const std::string &status, const std::stop_token &stop, bool connecting);
 
     double value_of(const SweepPlan &plan, unsigned plane, std::pair<double, double> range) const;
     [[noreturn]] void refuse(double value, std::pair<double, double> range);

@@ -134,7 +134,7 @@ TEST(GenicamLens, a_makers_lens_is_connected_first_and_a_focus_that_needs_it_is_
 {
     FakeCamera camera;
     camera.floats["FocalPower"] = {0.0, 6.0};
-    camera.statuses["LensStatus"] = {"NotConnected", "Busy", "Ready"};
+    camera.statuses["LensStatus"] = {"NotConnected", "NotConnected", "Busy", "Ready"};
     camera.statuses["FocusStatus"] = {"NotInitialized", "Busy", "Ready"};
     camera.commands = {"FocusInitialize", "LensConnect"};
     dff::GenicamLens lens(camera, "FocalPower", {});
