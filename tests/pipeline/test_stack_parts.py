@@ -220,6 +220,16 @@ class Seams(unittest.TestCase):
     def test_of_slabs(self):
         self.assert_no_seam(self.solve(slabs.slabs_of(MANY, 14), 1))
 
+    def test_memory_does_not_grow_from_slab_to_slab(self):
+        def resident():
+            return int(pathlib.Path('/proc/self/statm').read_text().split()[1]) * 4096
+
+        self.solve(slabs.slabs_of(MANY, 14), 1)
+        before = resident()
+        for _ in range(2):
+            self.solve(slabs.slabs_of(MANY, 14), 1)
+        self.assertLess(resident() - before, 16 * 2 ** 20)
+
     def test_of_tiles(self):
         self.assert_no_seam(self.solve([(0, MANY)], 2))
 

@@ -10,7 +10,7 @@ import numpy as np
 gi.require_version('Gst', '1.0')
 from gi.repository import Gst  # noqa: E402
 
-from dff_stack import Unusable, one_line  # noqa: E402
+from dff_stack import Unusable, memory, one_line  # noqa: E402
 from dff_stack.encoding import Encoding  # noqa: E402
 
 LUMA, DEPTH = Encoding('GRAY8', 1, 'u1', False), Encoding('GRAY16_LE', 1, '<u2', False)
@@ -28,6 +28,7 @@ class Solved:
 
 
 def start():
+    memory.use_sparingly()
     Gst.init(None)
     missing = [name for name in ELEMENTS if not Gst.ElementFactory.find(name)]
     if missing:
@@ -154,6 +155,7 @@ def running(description, tell):
         run.pipeline.set_state(Gst.State.NULL)
         raise
     run.pipeline.set_state(Gst.State.NULL)
+    memory.give_back()
 
 
 def caps_of(encoding, width, height, planes):

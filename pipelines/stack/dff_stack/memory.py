@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """How much memory there is to use."""
+import ctypes
 import pathlib
 import re
 
 from dff_stack import Unusable
 
+M_MMAP_THRESHOLD = -3  # of malloc.h
+LARGE = 2 ** 20        # bytes that are asked of the system and given back to it
 SHARE = 0.6  # of what is free
 UNITS = {'': 2 ** 30, 'K': 2 ** 10, 'M': 2 ** 20, 'G': 2 ** 30, 'T': 2 ** 40}
 
@@ -40,3 +43,13 @@ def to_use(asked):
     if asked > free_bytes():
         raise Unusable(f'--memory asks for {asked / 2**30:.1f} GiB, and {free_bytes() / 2**30:.1f} GiB are free')
     return asked
+
+
+def use_sparingly():
+    """Lets the C library give back what is large as soon as it is freed. By itself it keeps it for later, a share for each thread,
+    of which every run of the elements has new ones: a stack in twenty slabs would take twice its memory."""
+    ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, LARGE)
+
+
+def give_back():
+    ctypes.CDLL(None).malloc_trim(0)
