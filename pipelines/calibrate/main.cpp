@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "board_collector.h"
 #include "calibration_file.h"
+#include "lens_points.h"
 #include "options.h"
 
 #include <cstdio>
@@ -22,6 +23,14 @@ void write_sheet(const dff::Options &options)
         throw std::runtime_error("The sheet " + options.sheet + " cannot be written");
     std::cout << "Print " << options.sheet
               << " at its own size (100 %), measure a row of squares, and mount it flat.\n";
+}
+
+void write_points(const dff::Options &options)
+{
+    const dff::LensPoints points = dff::LensPoints::parse(options.points);
+    points.write(options.output, options.lens);
+    std::cout << options.output << " is for lens-profile, from " << points.points().front().metres << " to "
+              << points.points().back().metres << " m. " << points.worth() << '\n';
 }
 
 std::vector<dff::BoardView> look_for_boards(const dff::Options &options)
@@ -83,6 +92,8 @@ int run(const dff::Options &options)
 {
     if (!options.sheet.empty())
         write_sheet(options);
+    if (!options.points.empty())
+        write_points(options);
     if (options.sources.empty())
         return 0;
     if (!options.check.empty())

@@ -10,13 +10,14 @@ namespace dff {
 namespace {
 
 struct Values {
-    gchar *board = nullptr, *sheet = nullptr, *output = nullptr, *check = nullptr;
+    gchar *board = nullptr, *sheet = nullptr, *output = nullptr, *check = nullptr, *points = nullptr,
+          *lens = nullptr;
     gchar **recordings = nullptr, **sources = nullptr;
     gint boards = 0;
 
     ~Values()
     {
-        for (gchar *text : {board, sheet, output, check})
+        for (gchar *text : {board, sheet, output, check, points, lens})
             g_free(text);
         g_strfreev(recordings);
         g_strfreev(sources);
@@ -30,6 +31,7 @@ constexpr char summary[] = "Finds out what a camera and its lens are, from sweep
                            "  dff-calibrate --sheet board.svg\n"
                            "  dff-calibrate --source \"lenssweepsrc\"\n"
                            "  dff-calibrate --recording near.gdp --recording far.gdp ...\n"
+                           "  dff-calibrate --points 120=2.0,200=0.9,310=0.5 --output lens.yml\n"
                            "  dff-calibrate --check calibration.yml --recording today.gdp";
 
 std::string quoted(const gchar *path)
@@ -56,12 +58,14 @@ void take(const Values &values, Options &options)
     options.sheet = values.sheet ? values.sheet : options.sheet;
     options.output = values.output ? values.output : options.output;
     options.check = values.check ? values.check : options.check;
+    options.points = values.points ? values.points : options.points;
+    options.lens = values.lens ? values.lens : options.lens;
     if (values.boards < 0 || values.boards > 1000)
         throw std::invalid_argument("--boards is 1 to 1000");
     options.boards = values.boards ? static_cast<unsigned>(values.boards) : options.boards;
-    if (options.sources.empty() && options.sheet.empty())
+    if (options.sources.empty() && options.sheet.empty() && options.points.empty())
         throw std::invalid_argument(
-            "Nothing to look at: give --source or --recording, or --sheet; --help tells more");
+            "Nothing to look at: give --source or --recording, --points or --sheet; --help tells more");
 }
 
 } // namespace
@@ -82,6 +86,11 @@ Options parse_options(int argc, char **argv)
          "FILE"},
         {"check", 0, 0, G_OPTION_ARG_FILENAME, &values.check,
          "Write nothing: measure whether this file still fits", "FILE"},
+        {"points", 0, 0, G_OPTION_ARG_STRING, &values.points,
+         "Look at nothing: write a lens profile of distances that a tape measured, as "
+         "120=2.0,200=0.9,310=0.5",
+         "POSITION=METRES,..."},
+        {"lens", 0, 0, G_OPTION_ARG_STRING, &values.lens, "The name of that lens", "NAME"},
         {"boards", 0, 0, G_OPTION_ARG_INT, &values.boards, "Poses of the board after which to end (12)", "N"},
         {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
     g_autoptr(GOptionContext) context = g_option_context_new(nullptr);

@@ -13,6 +13,8 @@ struct Options {
     Board board;
     std::string sheet;
     std::vector<std::string> sources; /* descriptions for gst-launch-1.0 */
+    std::string points;               /* of a lens, as LensPoints has them */
+    std::string lens = "lens";
     std::string output = "calibration.yml";
     std::string check;
     unsigned boards = 12; /* after which no more are looked for */

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "fuzz.h"
 #include "optics/camera_calibration.h"
+#include "optics/focus_calibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     dff::read_as_file(data, size, [](const std::string &path) {
+        if (const auto focus = dff::read_focus_calibration(path))
+            dff::require(focus->vergences.size() >= 2 && focus->vergences.front() > focus->vergences.back());
         const dff::CameraCalibration camera = dff::read_camera_calibration(path).scaled_to(8192, 64);
         dff::require(camera.fx > 0.0 && camera.fy > 0.0 && std::isfinite(camera.fx * camera.fy));
         dff::require(std::isfinite(camera.cx) && std::isfinite(camera.cy));

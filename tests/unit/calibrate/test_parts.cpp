@@ -2,7 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "calibration_file.h"
 #include "focus_curves.h"
+#include "lens_points.h"
 #include "optics/focus_calibration.h"
+#include "optics/focus_points.h"
 
 #include <cmath>
 #include <fstream>
@@ -242,4 +244,34 @@ TEST(Calibrate, a_check_tells_what_has_changed)
     EXPECT_TRUE(is_said(check(known, board, views_of(poses, warm)).faults, "other distances"));
     breathing.shift = 0.6;
     EXPECT_TRUE(is_said(check(known, board, views_of(poses, breathing)).faults, "breathes"));
+}
+
+TEST(LensPoints, a_profile_of_a_tape_is_one_that_lenses_take)
+{
+    const TemporaryFile file;
+    const LensPoints points = LensPoints::parse("310=0.5,120=2.0,200=1.0");
+    points.write(file.path, "my webcam");
+    const FocusPoints profile = FocusPoints::load(file.path);
+    EXPECT_EQ(profile.lens(), "my webcam");
+    EXPECT_DOUBLE_EQ(profile.nearest(), 2.0);
+    EXPECT_DOUBLE_EQ(profile.position(1.0), 200.0);
+    EXPECT_DOUBLE_EQ(profile.position(0.5), 120.0);
+    /* On the line from 120 at 0.5 to 310 at 2 dioptres, 200 is at 1.1316. */
+    EXPECT_NEAR(*points.largest_miss(), 0.1316, 1e-4);
+    EXPECT_NE(points.worth().find("0.132 dioptres: 526 mm at 2.00 m, 33 mm at 0.50 m."), std::string::npos)
+        << points.worth();
+}
+
+TEST(LensPoints, two_points_do_not_know_their_error)
+{
+    const LensPoints points = LensPoints::parse("5=1,2=0.25");
+    EXPECT_FALSE(points.largest_miss());
+    EXPECT_NE(points.worth().find("third"), std::string::npos);
+}
+
+TEST(LensPoints, what_is_no_points_is_refused_with_what_to_do)
+{
+    for (const char *text :
+         {"", "1=2", "1=2,3", "1=2,x=3", "1=2,3=0", "1=2,3=-1", "1=2,3=2", "1=2,3=1,2=0.5", "1=2,,3=1"})
+        EXPECT_THROW(LensPoints::parse(text), std::invalid_argument) << text;
 }
