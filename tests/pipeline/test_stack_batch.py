@@ -67,7 +67,7 @@ class Batch(Folders):
     def assert_all_but_the_broken_one(self, status, output):
         self.assertEqual(status, 1, output)
         lines = output.strip().splitlines()
-        self.assertRegex(lines[-1], f'^{STACKS - 1} stacks done, 1 failed, ')
+        self.assertRegex(lines[-1], f'^{STACKS - 1} stacks done, 1 failed, ', output)
         broken = [line for line in lines if 'FAILED' in line]
         self.assertEqual(len(broken), 1)
         self.assertRegex(broken[0], r'^stack1 +FAILED: .*stack1/1\.png cannot be read: ')

@@ -24,11 +24,11 @@ GIB = 2 ** 30
 class Plans(unittest.TestCase):
     def test_slabs_share_planes_and_leave_none_out(self):
         for count in (2, 9, 16, 17, 64, 65, 300, 1000):
-            for size in (8, 16, 64):
+            for size in (3, 4, 8, 16, 64):
                 spans = slabs.slabs_of(count, size)
                 self.assertEqual((spans[0][0], spans[-1][1]), (0, count))
-                self.assertTrue(all(2 <= last - first <= size for first, last in spans))
-                self.assertTrue(all(before[1] - after[0] >= slabs.OVERLAP for before, after in zip(spans, spans[1:])), (count, size))
+                self.assertTrue(all(2 <= last - first <= max(size, 2) for first, last in spans))
+                self.assertTrue(all(before[1] - after[0] >= min(slabs.OVERLAP, size // 2) for before, after in zip(spans, spans[1:])), (count, size))
 
     def test_what_fits_is_computed_at_once(self):
         plan = slabs.plan(30, 1920, 1080, RGB, 4 * GIB, 10, 8192)
@@ -48,6 +48,11 @@ class Plans(unittest.TestCase):
                 covered[tile.y0 // 8:-(-tile.y1 // 8), tile.x0 // 8:-(-tile.x1 // 8)] += 1
             self.assertTrue(covered.all())
             self.assertGreaterEqual(plan.margin, 300 + slabs.MARGIN)
+
+    def test_little_memory_takes_small_slabs(self):
+        for memory_gib in (1, 1.3, 1.4, 1.5, 1.7, 2, 3):
+            plan = slabs.plan(30, 3000, 2000, RGB, memory_gib * GIB, 20, 8192)
+            self.assertTrue(all(last - first >= slabs.FEWEST_AT_ALL for first, last in plan.slabs))
 
     def test_too_little_memory_is_told(self):
         with self.assertRaisesRegex(Unusable, '0.5 GiB .* 6000x4000'):

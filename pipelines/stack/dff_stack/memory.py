@@ -5,8 +5,6 @@ import ctypes
 import pathlib
 import re
 
-from dff_stack import Unusable
-
 M_MMAP_THRESHOLD = -3  # of malloc.h
 LARGE = 2 ** 20        # bytes that are asked of the system and given back to it
 SHARE = 0.6  # of what is free
@@ -37,12 +35,8 @@ def free_bytes(meminfo='/proc/meminfo', group='/sys/fs/cgroup'):
 
 
 def to_use(asked):
-    """Bytes, by --memory or by what is free."""
-    if asked is None:
-        return SHARE * free_bytes()
-    if asked > free_bytes():
-        raise Unusable(f'--memory asks for {asked / 2**30:.1f} GiB, and {free_bytes() / 2**30:.1f} GiB are free')
-    return asked
+    """Bytes: at most what --memory says, and no more than is free."""
+    return SHARE * free_bytes() if asked is None else min(asked, free_bytes())
 
 
 def use_sparingly():

@@ -7,6 +7,8 @@ from dff_stack import Unusable
 
 MOST_PLANES = 64
 FEWEST_PLANES = 8       # of a slab, where the memory allows it; below that tiles are made smaller instead
+FEWEST_AT_ALL = 3
+MOST_TILES = 64
 OVERLAP = 4             # planes that two slabs share
 BLEND = 64              # pixels over which two tiles are blended
 MARGIN = 192            # pixels beside a tile that its depth looks at
@@ -80,23 +82,28 @@ def plan(count, width, height, encoding, memory, shift, most_side):
     """`shift`: pixels that planes are moved at most, which tiles must have around them. `most_side`: pixels that the elements take."""
     margin = MARGIN + BLEND // 2 + int(shift)
     columns, rows = -(-width // most_side), -(-height // most_side)
-    while True:
-        if columns > 1 or rows > 1:
-            while max(x1 - x0 for x0, x1 in edges(width, columns, margin)) > most_side:
-                columns += 1
-            while max(y1 - y0 for y0, y1 in edges(height, rows, margin)) > most_side:
-                rows += 1
+    best, best_size = None, FEWEST_AT_ALL - 1
+    while columns * rows <= MOST_TILES:
         tiles = tiles_of(width, height, columns, rows, margin)
-        pixels = max(tile.size[0] * tile.size[1] for tile in tiles)
-        frames = 0 if len(tiles) == 1 else width * height * encoding.channels * (1 if encoding.kind == 'u1' else 2)
-        room = memory - bytes_beside(encoding, pixels) - (0 if len(tiles) == 1 else bytes_beside(encoding, width * height))
-        size = min(MOST_PLANES, int(room // (bytes_a_plane(encoding, pixels) + frames)))
-        if size >= min(count, FEWEST_PLANES):
-            return Plan(slabs_of(count, min(size, count)), tiles, margin)
-        if len(tiles) >= 64:
-            raise Unusable(f'{memory / 2**30:.1f} GiB of memory are too few for pictures of {width}x{height}; '
-                           f'see --memory and --preview')
+        if max(max(tile.size) for tile in tiles) <= most_side:
+            size = min(MOST_PLANES, int(planes_that_fit(tiles, width * height, encoding, memory)))
+            if size > best_size:
+                best, best_size = tiles, size
+            if size >= min(count, FEWEST_PLANES):
+                break
         if width / columns >= height / rows:
             columns += 1
         else:
             rows += 1
+    if best is None:
+        raise Unusable(f'{memory / 2**30:.1f} GiB of memory are too few for pictures of {width}x{height}; see --memory and --preview')
+    return Plan(slabs_of(count, min(best_size, count)), best, margin)
+
+
+def planes_that_fit(tiles, pixels, encoding, memory):
+    """`pixels`: of the whole picture, of which the planes of a slab and the results stay in memory while tiles are computed."""
+    of_tile = max(tile.size[0] * tile.size[1] for tile in tiles)
+    frame = encoding.channels * (1 if encoding.kind == 'u1' else 2)
+    whole = 0 if len(tiles) == 1 else pixels
+    room = memory - bytes_beside(encoding, of_tile) - whole * (frame + 5)
+    return max(0, room // (bytes_a_plane(encoding, of_tile) + whole * frame))
