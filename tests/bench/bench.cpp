@@ -7,6 +7,8 @@
 #include "bench_stack.h"
 #include "engine/aif_composer.h"
 #include "engine/focus_engine.h"
+#include "engine/stack_denoiser.h"
+#include "engine/steady_depth.h"
 #include "opencv_focus.h"
 #include "plain_focus.h"
 #include "report.h"
@@ -107,8 +109,11 @@ class Rows {
 public:
     explicit Rows(const Case &c)
         : stack_(c.width, c.height, c.planes), copy_(stack_.memory.size()), paper_(stack_, Method::Paper),
-          volume_(stack_, Method::Volume)
+          volume_(stack_, Method::Volume), denoiser_(Device::open(""), stack_.shape),
+          denoised_(stack_.memory.size()), steady_(stack_.shape),
+          steady_depth_(size_t{stack_.shape.width} * stack_.shape.height, 20000)
     {
+        std::memcpy(denoised_.data(), stack_.memory.data(), denoised_.size());
         rows_.push_back({"memory copy", Row::Kind::Copy, 1, [this] {
                              std::memcpy(copy_.data(), stack_.memory.data(), copy_.size());
                              return nullptr;
@@ -119,8 +124,28 @@ public:
         rows_.push_back({"method=volume and AIF", Row::Kind::Ours, 1, [this] { return volume_.run(); }});
         rows_.push_back({"AIF alone, blend=sharp", Row::Kind::Part, 1,
                          [this] { return volume_.compose(AifComposer::Blend::Sharp); }});
+        add_time();
         if (c.with_others)
             add_others();
+    }
+
+    /* What the stacks before are good for. The same stack again and again stands still. */
+    void add_time()
+    {
+        rows_.push_back({"focalstackdenoise", Row::Kind::Part, 1, [this] {
+                             const StackView view{stack_.shape, denoised_, packed_layout(stack_.shape)};
+                             denoiser_.denoise(view, denoised_, 0, {});
+                             return nullptr;
+                         }});
+        rows_.push_back({"steady depth", Row::Kind::Part, 1, [this] {
+                             DepthJumps jumps;
+                             jumps.fill(4000);
+                             steady_.steady(stack_.view(),
+                                            {std::as_writable_bytes(std::span(steady_depth_)).data(),
+                                             stack_.shape.width * sizeof(uint16_t)},
+                                            jumps);
+                             return nullptr;
+                         }});
     }
 
     void run(unsigned rounds)
@@ -172,6 +197,10 @@ private:
 #ifdef HAVE_XIMGPROC
     std::unique_ptr<OpencvSolver> solver_;
 #endif
+    StackDenoiser denoiser_;
+    std::vector<std::byte> denoised_;
+    SteadyDepth steady_;
+    std::vector<uint16_t> steady_depth_;
     std::vector<Row> rows_;
 };
 
