@@ -163,6 +163,25 @@ TEST_F(FocalStackDenoise, a_lost_plane_stays_as_it_is)
     EXPECT_TRUE(std::equal(before.begin() + plane, before.begin() + 2 * plane, after.begin() + plane));
 }
 
+/* Nothing moves, so that all is as without it. */
+TEST_F(FocalStackDenoise, local_motion_goes_on_after_a_lost_plane)
+{
+    std::vector<std::vector<guint8>> seen[2];
+    for (const bool local_motion : {false, true}) {
+        start("I420");
+        next_ = 0;
+        g_object_set(harness_->element, "local-motion", static_cast<gboolean>(local_motion), nullptr);
+        for (unsigned seed = 0; seed < 6; seed++) {
+            GstBuffer *stack = new_stack(info_, next_++, 100, seed);
+            gst_buffer_get_focal_stack_meta(stack)->missing = seed == 3 ? 2 : 0;
+            gst_harness_push(harness_.get(), stack);
+            seen[local_motion ? 1 : 0].push_back(
+                bytes_of(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get()));
+        }
+    }
+    EXPECT_EQ(seen[0], seen[1]);
+}
+
 TEST_F(FocalStackDenoise, frames_can_be_changed_while_it_plays)
 {
     start("GRAY8");
