@@ -49,8 +49,9 @@ def process(options, progress, tell):
     said = []
 
     def say(text):
-        said.append(text)
-        tell(text)
+        if text not in said:  # the elements warn in every slab anew
+            said.append(text)
+            tell(text)
 
     engine.start()
     pictures, pixel_um = sweep.gather(options.pictures, options.order, options.far_first, say)
