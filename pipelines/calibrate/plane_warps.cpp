@@ -118,6 +118,24 @@ PlaneWarps find_warps(const std::vector<BoardView> &views)
     return warps;
 }
 
+std::vector<double> left_of_views(const std::vector<BoardView> &views, const PlaneWarps &warps)
+{
+    std::vector<double> result;
+    for (std::size_t v = 0; v < views.size(); v++) {
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t z = 0; z < warps.planes.size(); z++)
+            for (std::size_t k = 0; k < views[v].focus.size(); k++) {
+                const SeenCorner &corner = views[v].planes[z][k];
+                const cv::Point2d left = corner.at - center_of(views[v]) -
+                                         warps.planes[z].apply(warps.corners[v][k] - center_of(views[v]));
+                sum += weight_of(corner) * left.ddot(left) / 2.0;
+                weights += weight_of(corner);
+            }
+        result.push_back(std::sqrt(sum / weights));
+    }
+    return result;
+}
+
 PlaneWarps apply_warps(const std::vector<BoardView> &views, std::vector<PlaneSimilarity> planes)
 {
     PlaneWarps warps = start(views, std::move(planes));

@@ -29,6 +29,9 @@ struct PlaneWarps {
 /* Finds the warps that bring the corners of all views together. */
 PlaneWarps find_warps(const std::vector<BoardView> &views);
 
+/* What the warps leave of each view: root mean square along x and y, pixels. */
+std::vector<double> left_of_views(const std::vector<BoardView> &views, const PlaneWarps &warps);
+
 /* The corners of a view by warps that are known. */
 PlaneWarps apply_warps(const std::vector<BoardView> &views, std::vector<PlaneSimilarity> planes);
 

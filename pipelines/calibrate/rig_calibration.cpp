@@ -40,6 +40,34 @@ std::vector<std::vector<cv::Point2f>> single_precision(const std::vector<std::ve
     return result;
 }
 
+void require_enough(const std::vector<BoardView> &views)
+{
+    if (views.size() < fewest_boards)
+        throw Refusal(
+            "There are " + std::to_string(views.size()) +
+            " boards in different poses; at least 5 are needed, and 12 are good: near and far, in all parts "
+            "of the picture, tilted to all sides");
+}
+
+/* Finds the warps, and leaves out boards that moved during their sweep, the worst first. */
+PlaneWarps find_warps_at_rest(std::vector<BoardView> &views, std::vector<std::string> &weak)
+{
+    constexpr double least_px = 0.4, times = 4.0;
+    while (true) {
+        PlaneWarps warps = find_warps(views);
+        const std::vector<double> left = left_of_views(views, warps);
+        std::vector<double> sorted = left;
+        std::sort(sorted.begin(), sorted.end());
+        const auto worst = std::max_element(left.begin(), left.end()) - left.begin();
+        if (sorted.back() < std::max(least_px, times * sorted[sorted.size() / 2]))
+            return warps;
+        weak.push_back("A board moved during its sweep (by some " + number(sorted.back(), 1) +
+                       " px) and was left out: keep it at rest.");
+        views.erase(views.begin() + worst);
+        require_enough(views);
+    }
+}
+
 void require_alike(const std::vector<BoardView> &views, cv::Size picture, std::size_t planes)
 {
     for (const BoardView &view : views)
@@ -245,19 +273,15 @@ std::vector<cv::Matx34d> poses_by(const RigCalibration &calibration, const Board
 
 RigCalibration calibrate(const Board &board, std::vector<BoardView> views)
 {
-    if (views.size() < fewest_boards)
-        throw Refusal(
-            "There are " + std::to_string(views.size()) +
-            " boards in different poses; at least 5 are needed, and 12 are good: near and far, in all parts "
-            "of the picture, tilted to all sides");
+    require_enough(views);
     require_alike(views, views.front().picture, views.front().planes.size());
     RigCalibration result;
     result.blur_step = find_focus(views);
     require_distances(views);
-    result.boards = views.size();
     result.camera.width = static_cast<unsigned>(views.front().picture.width);
     result.camera.height = static_cast<unsigned>(views.front().picture.height);
-    result.warps = find_warps(views);
+    result.warps = find_warps_at_rest(views, result.weak);
+    result.boards = views.size();
     const std::vector<cv::Matx34d> poses = find_camera(board, result);
     require_tilt(poses);
     const std::vector<FocusPoint> points = focus_points(board, views, result, result.warps, poses);

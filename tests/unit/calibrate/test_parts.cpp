@@ -185,6 +185,19 @@ TEST(Calibrate, boards_without_tilt_leave_the_focal_length_open)
     }
 }
 
+TEST(Calibrate, a_board_that_moved_during_its_sweep_is_left_out)
+{
+    std::vector<BoardView> views = views_of(good_poses());
+    for (unsigned z = 0; z < planes; z++)
+        for (SeenCorner &corner : views[4].planes[z])
+            corner.at += cv::Point2d(3.0, -1.0) * static_cast<double>(z);
+    const RigCalibration found = calibrate(board, views);
+    EXPECT_EQ(found.boards, 11u);
+    EXPECT_TRUE(is_said(found.weak, "moved during its sweep"));
+    EXPECT_NEAR(found.warps.planes[0].dx, -0.9, 0.01);
+    EXPECT_NEAR(found.camera.fx, 800.0, 1.0);
+}
+
 TEST(Calibrate, planes_that_saw_no_board_are_named_with_their_distance)
 {
     const std::vector<Pose> all = good_poses();
