@@ -3,8 +3,8 @@
  *
  * Stands before every kernel file: how a stack is read.
  *
- * A stack is bytes plus a table of rows: rows[z] = (offset of plane z, stride), both in bytes. Luma is read in DN of
- * 8 bits; with LUMA_BYTES = 2 from little-endian 16-bit samples, whose 65535 is 255 DN.
+ * A stack is bytes plus a table of rows: rows[z] = (offset of plane z, stride), both in bytes. Luma and colours are read
+ * in DN of 8 bits; with LUMA_BYTES = 2 from little-endian 16-bit samples, whose 65535 is 255 DN.
  */
 #ifndef LUMA_BYTES
 #define LUMA_BYTES 1
@@ -12,14 +12,28 @@
 
 #define UNKNOWN_PLANE 255
 
+/* Sample i of a row, as it stands there and in DN. */
+inline uint sample_of(__global const uchar *row, ulong i)
+{
+#if LUMA_BYTES == 2
+    return row[2 * i] | (uint)row[2 * i + 1] << 8;
+#else
+    return row[i];
+#endif
+}
+
+inline float dn_of(__global const uchar *row, ulong i)
+{
+#if LUMA_BYTES == 2
+    return (float)sample_of(row, i) * (255.0f / 65535.0f);
+#else
+    return (float)row[i];
+#endif
+}
+
 inline float luma_at(__global const uchar *stack, ulong2 rows, int x, int y)
 {
-    __global const uchar *sample = stack + rows.x + rows.y * (ulong)y + (ulong)x * LUMA_BYTES;
-#if LUMA_BYTES == 2
-    return (float)(sample[0] | sample[1] << 8) * (255.0f / 65535.0f);
-#else
-    return (float)*sample;
-#endif
+    return dn_of(stack + rows.x + rows.y * (ulong)y, (ulong)x);
 }
 
 /* Index i of n samples mirrored at the ends without repeating them: -1 is 1, n is n - 2. Farther than n outside stands

@@ -163,12 +163,18 @@ __kernel void focus_volume(__global const uchar *stack, __global const ulong2 *r
 }
 
 #ifdef THIRDS
-/* R + G + B of interleaved colours, or luma of 16 bits as 765ths. */
+/* R + G + B of interleaved colours, or luma or colours of 16 bits as 765ths. */
 INLINE void make_thirds(__global const uchar *row, __global ushort *thirds, int width, int4 channels)
 {
-#ifdef GRAY16
+#if LUMA_BYTES == 2 && !defined(INTERLEAVED)
     for (int x = 0; x < width; x++)
-        thirds[x] = (ushort)(((row[2 * x] | (uint)row[2 * x + 1] << 8) * 765u + 32768u) >> 16);
+        thirds[x] = (ushort)((sample_of(row, x) * 765u + 32768u) >> 16);
+#elif LUMA_BYTES == 2
+    for (int x = 0; x < width; x++) {
+        const ulong pixel = (ulong)x * channels.s0;
+        const uint sum = sample_of(row, pixel) + sample_of(row, pixel + 1) + sample_of(row, pixel + 2);
+        thirds[x] = (ushort)((sum * 255u + 32768u) >> 16);
+    }
 #else
     for (int x = 0; x < width; x++) {
         __global const uchar *pixel = row + x * channels.s0;

@@ -12,8 +12,10 @@
 inline float noise_luma_at(__global const uchar *stack, ulong2 rows, int4 channels, int x, int y)
 {
 #ifdef INTERLEAVED
-    __global const uchar *pixel = stack + rows.x + rows.y * (ulong)y + (ulong)x * channels.s0;
-    return 0.299f * pixel[channels.s1] + 0.587f * pixel[channels.s2] + 0.114f * pixel[channels.s3];
+    __global const uchar *row = stack + rows.x + rows.y * (ulong)y;
+    const ulong pixel = (ulong)x * channels.s0;
+    return 0.299f * dn_of(row, pixel + channels.s1) + 0.587f * dn_of(row, pixel + channels.s2) +
+           0.114f * dn_of(row, pixel + channels.s3);
 #else
     return luma_at(stack, rows, x, y);
 #endif

@@ -11,11 +11,23 @@
  */
 #include "low_picture.cl"
 
+#if LUMA_BYTES == 2
+#define SAMPLE ushort
+#define SAMPLES(n) ushort##n
+#define SAMPLES_ANYWHERE lanes16
+#define DN_A_SAMPLE (255.0f / 65535.0f)
+#else
+#define SAMPLE uchar
+#define SAMPLES(n) uchar##n
+#define SAMPLES_ANYWHERE lanes8
+#define DN_A_SAMPLE 1.0f
+#endif
+
 #if SCALE == 2
 #define EDGE 2
 typedef float4 lanes;
 typedef float2 pixels;
-typedef uchar2 __attribute__((aligned(1))) bytes_anywhere;
+typedef SAMPLES(2) __attribute__((aligned(LUMA_BYTES))) samples_anywhere;
 typedef ushort2 __attribute__((aligned(2))) codes_anywhere;
 #define CONVERT_PIXELS convert_float2
 #define LOAD_PIXELS(p) vload2(0, p)
@@ -27,7 +39,7 @@ typedef ushort2 __attribute__((aligned(2))) codes_anywhere;
 #define EDGE 4
 typedef float16 lanes;
 typedef float4 pixels;
-typedef uchar4 __attribute__((aligned(1))) bytes_anywhere;
+typedef SAMPLES(4) __attribute__((aligned(LUMA_BYTES))) samples_anywhere;
 typedef ushort4 __attribute__((aligned(2))) codes_anywhere;
 #define CONVERT_PIXELS convert_float4
 #define LOAD_PIXELS(p) vload4(0, p)
@@ -96,10 +108,10 @@ INLINE Colours blend_any_part(const Stack *stack, const Blend *blend, int left, 
         for (int lane = 0; lane < LANES; lane++) {
             const int x = clamp(left + lane % EDGE, 0, stack->width - 1), y = clamp(top + lane / EDGE, 0, stack->height - 1);
 #if defined(INTERLEAVED)
-            __global const uchar *pixel = stack->stack + rows.x + rows.y * (ulong)y + x * CHANNELS;
-            sums[0][lane] += weight * pixel[stack->channels.s1];
-            sums[1][lane] += weight * pixel[stack->channels.s2];
-            sums[2][lane] += weight * pixel[stack->channels.s3];
+            __global const uchar *row = stack->stack + rows.x + rows.y * (ulong)y;
+            sums[0][lane] += weight * dn_of(row, x * CHANNELS + stack->channels.s1);
+            sums[1][lane] += weight * dn_of(row, x * CHANNELS + stack->channels.s2);
+            sums[2][lane] += weight * dn_of(row, x * CHANNELS + stack->channels.s3);
 #else
             sums[0][lane] += weight * luma_at(stack->stack, rows, x, y);
 #if defined(CHROMA)
@@ -129,8 +141,7 @@ INLINE Colours blend_any_part(const Stack *stack, const Blend *blend, int left, 
     return colours;
 }
 
-#if LUMA_BYTES == 1
-#define READ_PIXELS(pointer) CONVERT_PIXELS(*(__global const bytes_anywhere *)(pointer))
+#define READ_PIXELS(pointer) CONVERT_PIXELS(*(__global const samples_anywhere *)(pointer))
 
 /* The same of a part inside. */
 INLINE Colours blend_part(const Stack *stack, const Blend *blend, int left, int top)
@@ -149,20 +160,21 @@ INLINE Colours blend_part(const Stack *stack, const Blend *blend, int left, int 
         weights += weight;
         UNROLL
         for (int j = 0; j < EDGE; j++) {
-            __global const uchar *row = stack->stack + rows.x + rows.y * (ulong)(top + j);
+            __global const SAMPLE *row = (__global const SAMPLE *)(stack->stack + rows.x + rows.y * (ulong)(top + j));
 #if defined(INTERLEAVED)
 #if EDGE == 4 && CHANNELS == 4
-            const uchar16 bytes = *(__global const lanes8 *)(row + 4 * left);
-            const uchar4 first = bytes.s048c, second = bytes.s159d, third = bytes.s26ae;
+            const SAMPLES(16) all = *(__global const SAMPLES_ANYWHERE *)(row + 4 * left);
+            const SAMPLES(4) first = all.s048c, second = all.s159d, third = all.s26ae;
 #elif EDGE == 4
-            __global const bytes_anywhere *quads = (__global const bytes_anywhere *)(row + 3 * left);
-            const uchar4 a = quads[0], b = quads[1], c = quads[2];
-            const uchar4 first = (uchar4)(a.s03, b.s2, c.s1), second = (uchar4)(a.s1, b.s03, c.s2),
-                         third = (uchar4)(a.s2, b.s1, c.s03);
+            __global const samples_anywhere *quads = (__global const samples_anywhere *)(row + 3 * left);
+            const SAMPLES(4) a = quads[0], b = quads[1], c = quads[2];
+            const SAMPLES(4) first = (SAMPLES(4))(a.s03, b.s2, c.s1), second = (SAMPLES(4))(a.s1, b.s03, c.s2),
+                             third = (SAMPLES(4))(a.s2, b.s1, c.s03);
 #else
-            __global const uchar *pixel = row + CHANNELS * left;
-            const uchar2 first = (uchar2)(pixel[0], pixel[CHANNELS]), second = (uchar2)(pixel[1], pixel[CHANNELS + 1]),
-                         third = (uchar2)(pixel[2], pixel[CHANNELS + 2]);
+            __global const SAMPLE *pixel = row + CHANNELS * left;
+            const SAMPLES(2) first = (SAMPLES(2))(pixel[0], pixel[CHANNELS]),
+                             second = (SAMPLES(2))(pixel[1], pixel[CHANNELS + 1]),
+                             third = (SAMPLES(2))(pixel[2], pixel[CHANNELS + 2]);
 #endif
             red[j] += weight * CONVERT_PIXELS(first);
             green[j] += weight * CONVERT_PIXELS(second);
@@ -183,7 +195,7 @@ INLINE Colours blend_part(const Stack *stack, const Blend *blend, int left, int 
         }
 #endif
     }
-    const float scale = 1.0f / weights;
+    const float scale = DN_A_SAMPLE / weights;
     Colours colours;
 #if defined(INTERLEAVED)
     const int blue_first = stack->channels.s1 == 2;
@@ -201,6 +213,3 @@ INLINE Colours blend_part(const Stack *stack, const Blend *blend, int left, int 
 #endif
     return colours;
 }
-#else
-#define blend_part blend_any_part
-#endif

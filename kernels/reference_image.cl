@@ -32,7 +32,7 @@ __kernel void mean_chroma(__global const uchar *stack, __global const ulong2 *ro
 }
 
 /* U = 128 + 0.492 (B - Y), V = 128 + 0.877 (R - Y) of the mean of interleaved colours.
- * channels = (bytes a pixel, index of R, G, B). */
+ * channels = (samples a pixel, index of R, G, B). */
 __kernel void mean_chroma_of_colours(__global const uchar *stack, __global const ulong2 *rows, __global uchar *mean_u,
                                      __global uchar *mean_v, int width, int planes, int4 channels)
 {
@@ -41,8 +41,9 @@ __kernel void mean_chroma_of_colours(__global const uchar *stack, __global const
         return;
     float3 sum = (float3)(0.0f);
     for (int z = 0; z < planes; z++) {
-        __global const uchar *pixel = stack + rows[z].x + rows[z].y * (ulong)y + (ulong)x * channels.s0;
-        sum += (float3)(pixel[channels.s1], pixel[channels.s2], pixel[channels.s3]);
+        __global const uchar *row = stack + rows[z].x + rows[z].y * (ulong)y;
+        const ulong pixel = (ulong)x * channels.s0;
+        sum += (float3)(dn_of(row, pixel + channels.s1), dn_of(row, pixel + channels.s2), dn_of(row, pixel + channels.s3));
     }
     sum /= planes;
     const float luma = 0.299f * sum.x + 0.587f * sum.y + 0.114f * sum.z;

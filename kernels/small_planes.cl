@@ -62,6 +62,19 @@ INLINE void average_both(__global const uchar *top, ulong stride, const int box,
     *second = as_short16(sum_along(seconds, box) * factor / divisor);
 }
 
+#if LUMA_BYTES == 2
+typedef uint sum_t;
+typedef uint16 sums_t;
+#define ADD_SAMPLES(row) convert_uint16(*(__global const lanes16 *)(row))
+/* Of a sum over SCALE x SCALE samples: no product needs more than 32 bits. */
+#define TO_COLOUR(sum) ((sum) / (SCALE * SCALE) * COLOUR_ONE / 257)
+#else
+typedef ushort sum_t;
+typedef ushort16 sums_t;
+#define ADD_SAMPLES(row) convert_ushort16(*(__global const uchar16_anywhere *)(row))
+#define TO_COLOUR(sum) ((sum) * COLOUR_ONE / (SCALE * SCALE))
+#endif
+
 /* The average of a square of any samples, `step` bytes apart. */
 INLINE short average_any(__global const uchar *top, ulong stride, int step, const int box, int one)
 {
@@ -92,7 +105,7 @@ INLINE short average_any(__global const uchar *top, ulong stride, int step, cons
 #define ONE_SHORT(pointer) *(pointer)
 #endif
 
-/* `channels`: of interleaved colours bytes a pixel and index of R, G, B; of NV12 and I420 step and index of U, of V.
+/* `channels`: of interleaved colours samples a pixel and index of R, G, B; of NV12 and I420 step and index of U, of V.
  * Planes whose bit of `wanted` is not set stay as they are. Work-items (1, low height, planes). */
 __kernel void average_colours(__global const uchar *stack, __global const ulong2 *rows, int4 channels, ulong wanted,
                               __global short *small, int low_width, int stride)
@@ -139,17 +152,23 @@ __kernel void average_colours(__global const uchar *stack, __global const ulong2
 #elif defined(INTERLEAVED)
     /* 16 pixels at a time, the last ones overlapping those before. */
     const int place[3] = {channels.s1, channels.s2, channels.s3};
-    ushort sums[16 * CHANNELS];
+    sum_t sums[16 * CHANNELS];
     for (int x = 0; x < low_width; x += 16 / SCALE) {
         const int from = min(x, low_width - 16 / SCALE);
-        for (int part = 0; part < CHANNELS; part++)
-            vstore16(sum_rows(top + from * SCALE * CHANNELS + 16 * part, step, SCALE), part, sums);
+        for (int part = 0; part < CHANNELS; part++) {
+            __global const uchar *samples = top + (from * SCALE * CHANNELS + 16 * part) * LUMA_BYTES;
+            sums_t sum = 0;
+            UNROLL
+            for (int j = 0; j < SCALE; j++)
+                sum += ADD_SAMPLES(samples + step * (ulong)j);
+            vstore16(sum, part, sums);
+        }
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < 16 / SCALE; i++) {
                 uint sum = 0;
                 for (int k = 0; k < SCALE; k++)
                     sum += sums[(i * SCALE + k) * CHANNELS + place[c]];
-                row[c * colour + from + i] = (short)(sum * COLOUR_ONE / (SCALE * SCALE));
+                row[c * colour + from + i] = (short)TO_COLOUR(sum);
             }
     }
 #else

@@ -34,12 +34,12 @@ cl_int2 size_of(const StackShape &shape)
 AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape)
     : device_(std::move(device)), shape_(shape), components_(shape.components()), queue_(device_),
       stack_(queue_, shape), depth_(queue_), picture_(queue_),
-      in_strips_(device_->kernel_style() == KernelStyle::Tiles && shape.format != PixelFormat::Gray16 &&
+      in_strips_(device_->kernel_style() == KernelStyle::Tiles && sample_bytes(shape.format) == 1 &&
                  shape.width <= most_columns),
       noise_(queue_, shape, 2), positions_(queue_.allocate((DepthScale::max_pixel + 1) * sizeof(cl_float))),
       encoder_(DepthEncoder::index(shape.planes))
 {
-    const char *sample = shape.format == PixelFormat::Gray16 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
+    const char *sample = sample_bytes(shape.format) == 2 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
     if (in_strips_) {
         compose_ = Program(*device_, "aif_strips").kernel("compose_strip");
         picture_components_ = queue_.allocate(components_.size() * sizeof(PictureComponent));

@@ -16,10 +16,8 @@ bool has_byte_luma(PixelFormat format)
 
 std::string build_options(PixelFormat format, const LowShape &low)
 {
-    std::string options = "-DSCALE=" + std::to_string(low.scale);
-    if (!has_byte_luma(format))
-        options += format == PixelFormat::Gray16 ? " -DTHIRDS -DGRAY16" : " -DTHIRDS";
-    return options;
+    const std::string options = colour_options(format) + " -DSCALE=" + std::to_string(low.scale);
+    return has_byte_luma(format) ? options : options + " -DTHIRDS";
 }
 
 } // namespace

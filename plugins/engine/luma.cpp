@@ -7,7 +7,7 @@ namespace dff {
 bool is_interleaved(PixelFormat format)
 {
     return format == PixelFormat::Rgb || format == PixelFormat::Bgr || format == PixelFormat::Rgbx ||
-           format == PixelFormat::Bgrx;
+           format == PixelFormat::Bgrx || format == PixelFormat::Rgba64;
 }
 
 cl_int4 colour_channels(PixelFormat format)
@@ -17,13 +17,13 @@ cl_int4 colour_channels(PixelFormat format)
     if (format == PixelFormat::Nv12)
         return {{2, 0, 2, 1}};
     const bool blue_first = format == PixelFormat::Bgr || format == PixelFormat::Bgrx;
-    const int bytes = format == PixelFormat::Rgbx || format == PixelFormat::Bgrx ? 4 : 3;
-    return {{bytes, blue_first ? 2 : 0, 1, blue_first ? 0 : 2}};
+    const int samples = format == PixelFormat::Rgb || format == PixelFormat::Bgr ? 3 : 4;
+    return {{samples, blue_first ? 2 : 0, 1, blue_first ? 0 : 2}};
 }
 
 std::string Luma::build_options(PixelFormat format)
 {
-    return format == PixelFormat::Gray16 ? "-DLUMA_BYTES=2" : "-DLUMA_BYTES=1";
+    return "-DLUMA_BYTES=" + std::to_string(sample_bytes(format));
 }
 
 std::string colour_options(PixelFormat format)
@@ -42,12 +42,13 @@ Luma::Luma(CommandQueue &queue, const StackShape &shape) : queue_(queue), shape_
 {
     if (!is_interleaved(shape.format))
         return;
-    kernel_ = Program(queue.device(), "luma").kernel("luma_of_colours");
-    bytes_ = queue.allocate(size_t{shape.width} * shape.height * shape.planes);
+    kernel_ = Program(queue.device(), "luma", build_options(shape.format)).kernel("luma_of_colours");
+    const StackShape luma{sample_bytes(shape.format) == 2 ? PixelFormat::Gray16 : PixelFormat::Gray8,
+                          shape.width, shape.height, shape.planes};
+    bytes_ = queue.allocate(bytes_of(luma));
     rows_ = queue.allocate(shape.planes * sizeof(RowLayout));
 
-    const std::vector<RowLayout> rows =
-        packed_layout({PixelFormat::Gray8, shape.width, shape.height, shape.planes});
+    const std::vector<RowLayout> rows = packed_layout(luma);
     queue.commands().enqueueWriteBuffer(rows_, CL_TRUE, 0, rows.size() * sizeof(RowLayout), rows.data());
 }
 

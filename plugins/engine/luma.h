@@ -8,7 +8,7 @@
 namespace dff {
 
 /* The luma of a stack, which every later stage reads: in place where the format has it (gray, I420, NV12),
- * computed from the colours (BT.601) otherwise. */
+ * computed from the colours (BT.601), in as many bits as they have, otherwise. */
 class Luma {
 public:
     Luma(CommandQueue &queue, const StackShape &shape);
@@ -29,7 +29,7 @@ private:
     cl::Buffer rows_;
 };
 
-/* How the kernels find the colours: of an interleaved format bytes a pixel and indices of R, G, B; of NV12
+/* How the kernels find the colours: of an interleaved format samples a pixel and indices of R, G, B; of NV12
  * and I420 step and index of U, step and index of V in their components. */
 cl_int4 colour_channels(PixelFormat format);
 

@@ -22,8 +22,7 @@ NoiseEstimate::NoiseEstimate(CommandQueue &queue, const StackShape &shape, cl_in
       histograms_(queue.allocate(shape.planes * bins * sizeof(cl_uint))),
       sigmas_(queue.allocate(shape.planes * sizeof(cl_float))), noise_(queue.allocate(sizeof(Noise)))
 {
-    const Program program(queue.device(), "noise",
-                          is_interleaved(shape.format) ? "-DINTERLEAVED" : Luma::build_options(shape.format));
+    const Program program(queue.device(), "noise", colour_options(shape.format));
     plane_noise_ = program.kernel("plane_noise");
     judge_noise_ = program.kernel("judge_noise");
 }

@@ -348,7 +348,7 @@ DenoiseReport StackDenoiser::report()
         report.noise.push_back(part->noise);
         report.spread.push_back(part->spread);
     }
-    report.sample_unit = shape_.format == PixelFormat::Gray16 ? 1.0 / 256.0 : 1.0;
+    report.sample_unit = sample_bytes(shape_.format) == 2 ? 1.0 / 256.0 : 1.0;
     std::vector<uint8_t> sweeps(tiles_a_plane() * shape_.planes);
     if (has_means_)
         queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, 0, sweeps.size(), sweeps.data());

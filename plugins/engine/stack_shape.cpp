@@ -4,6 +4,11 @@
 
 namespace dff {
 
+uint32_t sample_bytes(PixelFormat format)
+{
+    return format == PixelFormat::Gray16 || format == PixelFormat::Rgba64 ? 2 : 1;
+}
+
 std::vector<Component> StackShape::components() const
 {
     const uint32_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
@@ -23,6 +28,8 @@ std::vector<Component> StackShape::components() const
     case PixelFormat::Rgbx:
     case PixelFormat::Bgrx:
         return {{4 * width, height, 4, 1, 1}};
+    case PixelFormat::Rgba64:
+        return {{4 * width, height, 4, 1, 2}};
     }
     return {};
 }

@@ -12,7 +12,10 @@
 
 namespace dff {
 
-enum class PixelFormat { Gray8, Gray16, I420, Nv12, Rgb, Bgr, Rgbx, Bgrx };
+enum class PixelFormat { Gray8, Gray16, I420, Nv12, Rgb, Bgr, Rgbx, Bgrx, Rgba64 };
+
+/* 1, or 2 (little endian). */
+uint32_t sample_bytes(PixelFormat format);
 
 /* One component plane of a picture (luma, chroma, or interleaved colours), as rows of samples. */
 struct Component {
@@ -20,7 +23,7 @@ struct Component {
     uint32_t height;       /* rows */
     uint32_t channels;     /* interleaved channels */
     uint32_t subsampling;  /* picture pixels a sample in each direction: 1 or 2 */
-    uint32_t sample_bytes; /* 1 or 2 (little endian) */
+    uint32_t sample_bytes; /* see sample_bytes() */
 };
 
 struct StackShape {

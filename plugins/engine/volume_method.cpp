@@ -56,9 +56,8 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const uint64_t planes = shape.planes;
     const uint64_t pictures = 15 * planes + 9 + 2 * 33; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
-    const bool is_interleaved_or_16 =
-        shape.components().front().channels > 1 || shape.components().front().sample_bytes > 1;
-    const uint64_t motion = pixels * (is_interleaved_or_16 ? planes + 1 : 1);
+    const uint64_t luma = is_interleaved(shape.format) ? planes * sample_bytes(shape.format) : 0;
+    const uint64_t motion = pixels * (luma + 1);
     return low.height * row * pictures + CostVolume::scratch_bytes(low) + GuidedFilter::scratch_bytes(low) +
            FocusVolume::scratch_bytes(shape, low) + FocusPyramid::memory(low) +
            pixels * (2 * sizeof(cl_ushort) + 1) + motion;

@@ -147,6 +147,7 @@ cv::Mat1f SmallStack::luma(unsigned z) const
     switch (shape_.format) {
     case PixelFormat::Rgb:
     case PixelFormat::Rgbx:
+    case PixelFormat::Rgba64:
         return cv::Mat1f(0.299F * plane[0] + 0.587F * plane[1] + 0.114F * plane[2]);
     case PixelFormat::Bgr:
     case PixelFormat::Bgrx:

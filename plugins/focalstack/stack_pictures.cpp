@@ -43,7 +43,7 @@ std::vector<guint> StackPictures::channels(unsigned component) const
 
     gst_video_format_info_component(info_.frame.finfo, component, numbers);
     for (const gint number : numbers) {
-        if (number >= 0)
+        if (number >= 0 && number != GST_VIDEO_COMP_A)
             result.push_back(static_cast<guint>(number));
     }
     std::ranges::sort(result, {},

@@ -42,7 +42,7 @@ private:
 
     StackPictures(const GstFocalStackInfo &info, GstBuffer *buffer) : info_(info), buffer_(buffer) {}
 
-    /* The numbers of the colour channels in the component, in the order of their bytes. */
+    /* The numbers of the colour channels in the component, in the order of their bytes; alpha is none. */
     std::vector<guint> channels(unsigned component) const;
 
     GstFocalStackInfo info_;

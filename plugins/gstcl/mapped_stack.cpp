@@ -27,6 +27,8 @@ PixelFormat pixel_format(GstVideoFormat format)
         return PixelFormat::Rgbx;
     case GST_VIDEO_FORMAT_BGRx:
         return PixelFormat::Bgrx;
+    case GST_VIDEO_FORMAT_RGBA64_LE:
+        return PixelFormat::Rgba64;
     default: /* the pad template lets nothing else through */
         return PixelFormat::Gray8;
     }

@@ -42,7 +42,7 @@
 
 GST_DEBUG_CATEGORY(gst_lens_sweep_test_src_debug);
 
-#define VIDEO_CAPS GST_VIDEO_CAPS_MAKE("{ I420, GRAY8, GRAY16_LE, NV12, RGB, BGR, RGBx, BGRx }")
+#define VIDEO_CAPS GST_VIDEO_CAPS_MAKE("{ I420, GRAY8, GRAY16_LE, NV12, RGB, BGR, RGBx, BGRx, RGBA64_LE }")
 #define DEPTH_CAPS GST_VIDEO_CAPS_MAKE("GRAY16_LE")
 
 static GstStaticPadTemplate src_template =

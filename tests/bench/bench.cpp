@@ -125,8 +125,10 @@ public:
         rows_.push_back({"AIF alone, blend=sharp", Row::Kind::Part, 1,
                          [this] { return volume_.compose(AifComposer::Blend::Sharp); }});
         add_time();
-        if (c.with_others)
+        if (c.with_others) {
+            add_deep_colour();
             add_others();
+        }
     }
 
     /* What the stacks before are good for. The same stack again and again stands still. */
@@ -162,6 +164,19 @@ public:
     const std::vector<Row> &rows() const { return rows_; }
 
 private:
+    void add_deep_colour()
+    {
+        deep_stack_ = std::make_unique<BenchStack>(stack_.in_deep_colour());
+        deep_paper_ = std::make_unique<Pipeline>(*deep_stack_, Method::Paper);
+        deep_volume_ = std::make_unique<Pipeline>(*deep_stack_, Method::Volume);
+        rows_.push_back(
+            {"RGBA64_LE: method=paper and AIF", Row::Kind::Part, 3, [this] { return deep_paper_->run(); }});
+        rows_.push_back(
+            {"RGBA64_LE: method=volume and AIF", Row::Kind::Part, 3, [this] { return deep_volume_->run(); }});
+        rows_.push_back({"RGBA64_LE: AIF alone, blend=sharp", Row::Kind::Part, 3,
+                         [this] { return deep_volume_->compose(AifComposer::Blend::Sharp); }});
+    }
+
     void add_others()
     {
         const auto add_sum = [this](const char *name,
@@ -194,6 +209,8 @@ private:
     BenchStack stack_;
     std::vector<std::byte> copy_;
     Pipeline paper_, volume_;
+    std::unique_ptr<BenchStack> deep_stack_;
+    std::unique_ptr<Pipeline> deep_paper_, deep_volume_;
 #ifdef HAVE_XIMGPROC
     std::unique_ptr<OpencvSolver> solver_;
 #endif

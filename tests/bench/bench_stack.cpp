@@ -43,9 +43,13 @@ void paint(const cv::Mat &sharp, int blur_step, std::vector<cv::Mat> planes)
 
 } // namespace
 
+BenchStack::BenchStack(const StackShape &described)
+    : shape(described), layout(packed_layout(shape)), memory(bytes_of(shape))
+{
+}
+
 BenchStack::BenchStack(uint32_t width, uint32_t height, uint32_t planes)
-    : shape{PixelFormat::I420, width, height, planes}, layout(packed_layout(shape)),
-      memory(size_t{width} * height * 3 / 2 * planes)
+    : BenchStack({PixelFormat::I420, width, height, planes})
 {
     const std::vector<Component> components = shape.components();
     const auto planes_of = [&](size_t component) {
@@ -63,6 +67,20 @@ BenchStack::BenchStack(uint32_t width, uint32_t height, uint32_t planes)
         paint(textured_picture(random, pixels / 2, {4, 32, 128}, 20.0f), 1, planes_of(chroma));
     for (const cv::Mat &plane : planes_of(0))
         luma.insert(luma.end(), plane.datastart, plane.dataend);
+}
+
+BenchStack BenchStack::in_deep_colour() const
+{
+    BenchStack deep({PixelFormat::Rgba64, shape.width, shape.height, shape.planes});
+    const int width = static_cast<int>(shape.width), height = static_cast<int>(shape.height);
+    for (uint32_t z = 0; z < shape.planes; z++) {
+        const cv::Mat plane(height * 3 / 2, width, CV_8U,
+                            const_cast<std::byte *>(memory.data()) + layout[z].offset); /* only read */
+        cv::Mat colours, target(height, width, CV_16UC4, deep.memory.data() + deep.layout[z].offset);
+        cv::cvtColor(plane, colours, cv::COLOR_YUV2RGBA_I420);
+        colours.convertTo(target, CV_16U, 257.0);
+    }
+    return deep;
 }
 
 } // namespace dff::bench

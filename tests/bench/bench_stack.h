@@ -11,12 +11,18 @@ namespace dff::bench {
 struct BenchStack {
     BenchStack(uint32_t width, uint32_t height, uint32_t planes);
 
+    /* The same picture in RGBA64. */
+    BenchStack in_deep_colour() const;
+
     StackView view() const { return {shape, memory, layout}; }
 
     StackShape shape;
     std::vector<RowLayout> layout;
     std::vector<std::byte> memory;
     std::vector<uint8_t> luma; /* of all planes, one after the other */
+
+private:
+    explicit BenchStack(const StackShape &shape);
 };
 
 } // namespace dff::bench

@@ -13,7 +13,8 @@ enum class Kind { Frames, Stacks, Depth };
 
 GstCaps *frame_caps(Chance &chance, const Shape &shape)
 {
-    const auto *format = chance.of<const char *>({"GRAY8", "I420", "NV12", "RGB", "BGRx", "GRAY16_LE"});
+    const auto *format =
+        chance.of<const char *>({"GRAY8", "I420", "NV12", "RGB", "BGRx", "GRAY16_LE", "RGBA64_LE"});
     return gst_caps_new_simple("video/x-raw", "format", G_TYPE_STRING, format, "width", G_TYPE_INT,
                                shape.width, "height", G_TYPE_INT, shape.height, "framerate",
                                GST_TYPE_FRACTION, 25, 1, "interlace-mode", G_TYPE_STRING, "progressive",

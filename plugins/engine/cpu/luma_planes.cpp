@@ -18,6 +18,8 @@ const char *kernel_for(PixelFormat format)
         return "luma_of_4_bytes";
     case PixelFormat::Gray16:
         return "luma_of_16_bits";
+    case PixelFormat::Rgba64:
+        return "luma_of_4_shorts";
     default:
         return nullptr;
     }

@@ -8,7 +8,7 @@
 namespace dff {
 
 /* The luma of a stack in 8 bits, for the CPU's kernels: in place where the format has it (GRAY8, I420, NV12),
- * otherwise computed from the colours (BT.601) or rounded from 16 bits. */
+ * otherwise computed from the colours (BT.601), rounded from 16 bits, or both. */
 class LumaPlanes {
 public:
     LumaPlanes(CommandQueue &queue, const StackShape &shape);

@@ -20,7 +20,7 @@ cv::Mat channel_of(const GstFocalStackInfo &info, guint8 *data, unsigned z, unsi
                    static_cast<size_t>(GST_VIDEO_INFO_COMP_STRIDE(frame, channel)));
 }
 
-/* Every colour channel shows the picture; chroma does so at half the size. */
+/* Every colour channel shows the picture; chroma does so at half the size; alpha is opaque. */
 void draw(const GstFocalStackInfo &info, guint8 *data, unsigned z, const cv::Mat &picture)
 {
     for (unsigned i = 0; i < GST_VIDEO_INFO_N_PLANES(&info.frame); i++) {
@@ -31,6 +31,9 @@ void draw(const GstFocalStackInfo &info, guint8 *data, unsigned z, const cv::Mat
         cv::resize(picture, one, packed.size(), 0.0, 0.0, cv::INTER_AREA);
         one.convertTo(one, packed.depth(), packed.depth() == CV_16U ? 200.0 : 1.0);
         cv::merge(std::vector<cv::Mat>(static_cast<size_t>(packed.channels()), one), packed);
+        if (GST_VIDEO_INFO_HAS_ALPHA(&info.frame))
+            cv::insertChannel(cv::Mat(packed.size(), packed.depth(), cv::Scalar::all(65535)), packed,
+                              GST_VIDEO_COMP_A);
     }
 }
 

@@ -80,19 +80,21 @@ INSTANTIATE_TEST_SUITE_P(Brightness, Types, testing::Values(CV_8UC1, CV_8UC2, CV
 
 TEST(Brightness, a_fourth_channel_is_no_colour)
 {
-    std::vector<cv::Mat> planes = flickering(make_stack(CV_8UC4));
-    for (cv::Mat &plane : planes) {
-        cv::Mat fourth(plane.size(), CV_8U, cv::Scalar::all(255));
-        cv::insertChannel(fourth, plane, 3);
-    }
-    dff::even_brightness(planes, in_place(5), std::vector{0.0, 0.0, 0.0});
+    for (const auto &[type, most] : {std::pair(CV_8UC4, 255.0), std::pair(CV_16UC4, 65535.0)}) {
+        std::vector<cv::Mat> planes = flickering(make_stack(type));
+        for (cv::Mat &plane : planes) {
+            cv::Mat fourth(plane.size(), plane.depth(), cv::Scalar::all(most));
+            cv::insertChannel(fourth, plane, 3);
+        }
+        dff::even_brightness(planes, in_place(5), std::vector{0.0, 0.0, 0.0});
 
-    for (const cv::Mat &plane : planes) {
-        cv::Mat fourth;
-        cv::extractChannel(plane, fourth, 3);
-        EXPECT_EQ(cv::countNonZero(fourth != 255), 0);
+        for (const cv::Mat &plane : planes) {
+            cv::Mat fourth;
+            cv::extractChannel(plane, fourth, 3);
+            EXPECT_EQ(cv::countNonZero(fourth != most), 0);
+        }
+        EXPECT_NEAR(cv::mean(planes[0])[0] / most, cv::mean(planes[2])[0] / most, 1.5 / 255.0);
     }
-    EXPECT_NEAR(cv::mean(planes[0])[0], cv::mean(planes[2])[0], 1.5);
 }
 
 TEST(Brightness, even_planes_are_not_touched)

@@ -27,7 +27,8 @@ TEST_P(Formats, planes_come_to_lie_on_the_middle_one)
 }
 
 INSTANTIATE_TEST_SUITE_P(FocalStackAlign, Formats,
-                         testing::Values("GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx"),
+                         testing::Values("GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx",
+                                         "RGBA64_LE"),
                          [](const auto &format) { return std::string(format.param); });
 
 TEST_F(FocalStackAlign, stats_tell_shift_and_zoom_of_each_plane)

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 namespace {
 
@@ -56,6 +57,31 @@ TEST(UndoWarp, what_lies_in_its_place_is_copied)
 
     dff::undo_warp(stack.planes[0], aligned, {1.0, 0.0, 0.01, 0.0});
     EXPECT_EQ(cv::norm(aligned, stack.planes[0], cv::NORM_INF), 0.0);
+}
+
+TEST(UndoWarp, a_ramp_of_16_bits_keeps_its_steps)
+{
+    constexpr int columns = 4160, step = 15, beside = 32;
+    cv::Mat plane(24, columns, CV_16UC4);
+    for (int x = 0; x < columns; x++)
+        plane.col(x).setTo(cv::Scalar(step * x, step * x + 100, step * x + 200, 65535));
+    for (const double perspective : {0.0, 1e-9}) { /* OpenCV has a function for each */
+        const dff::PlaneWarp warp(cv::Matx33d(1, 0, 2.4, 0, 1, 0.3, perspective, 0, 1));
+        cv::Mat aligned(plane.size(), plane.type());
+        dff::undo_warp(plane, aligned, warp);
+
+        std::set<int> values;
+        double farthest = 0.0;
+        for (int x = beside; x < columns - beside; x++) {
+            const auto pixel = aligned.at<cv::Vec<ushort, 4>>(12, x);
+            values.insert(pixel[0]);
+            for (int i = 0; i < 3; i++)
+                farthest = std::max(farthest, std::abs(pixel[i] - (step * (x + 2.4) + 100.0 * i)));
+            ASSERT_EQ(pixel[3], 65535);
+        }
+        EXPECT_LE(farthest, 1.0);
+        EXPECT_EQ(values.size(), static_cast<std::size_t>(columns - 2 * beside));
+    }
 }
 
 /* 20 pixels of the plane's own picture are missing at its right border; in the first 5 it goes on and fades.

@@ -52,7 +52,8 @@ TEST(AifCompose, every_stack_becomes_a_picture_of_its_time)
 
 TEST(AifCompose, every_format_runs)
 {
-    for (const char *format : {"GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx"}) {
+    for (const char *format :
+         {"GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx", "RGBA64_LE"}) {
         TestPipeline pipeline(
             graph("lenssweeptestsrc num-buffers=12 ! video/x-raw,width=101,height=75,format=" +
                   std::string(format) + " ! focalstackmux"));

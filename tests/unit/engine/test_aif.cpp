@@ -145,22 +145,17 @@ void AifFormats::expect_twin(const TestStack &stack, Kind kind)
             for (unsigned x = 0; x < components[c].width; x++) {
                 const double u =
                     position_of(taken_at, stack.shape, components[c], x / components[c].channels, y);
-                const auto value = [&](unsigned z) -> double {
-                    if (format == PixelFormat::Gray16)
-                        return stack.sample(c, 2 * x, y, z) + 256.0 * stack.sample(c, 2 * x + 1, y, z);
-                    return stack.sample(c, x, y, z);
-                };
                 std::vector<double> planes;
                 for (unsigned z = 0; z < 7; z++)
-                    planes.push_back(value(z));
+                    planes.push_back(stack.value(c, x, y, z));
                 const std::byte *sample =
                     picture.data() + layout[c].offset + layout[c].stride * y + x * components[c].sample_bytes;
                 double found = static_cast<double>(sample[0]);
-                if (format == PixelFormat::Gray16)
+                if (sample_bytes(format) == 2)
                     found += 256.0 * static_cast<double>(sample[1]);
                 /* Rounding; in tiles, positions are rounded to 1/256 plane too. */
                 const double of_8_bits = style == KernelStyle::Pixels ? 0.55 : 1.05;
-                const double tolerance = format == PixelFormat::Gray16 ? 8.0 : of_8_bits;
+                const double tolerance = sample_bytes(format) == 2 ? 8.0 : of_8_bits;
                 ASSERT_NEAR(found, twin_sample(planes, u, blend, kind), tolerance)
                     << x << "," << y << " component " << c;
             }
@@ -170,6 +165,6 @@ INSTANTIATE_TEST_SUITE_P(
     Aif, AifFormats,
     testing::Combine(testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
                                      PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr, PixelFormat::Rgbx,
-                                     PixelFormat::Bgrx),
+                                     PixelFormat::Bgrx, PixelFormat::Rgba64),
                      testing::Values(AifComposer::Blend::Linear, AifComposer::Blend::Soft),
                      testing::Values(KernelStyle::Pixels, KernelStyle::Tiles), testing::Bool()));

@@ -153,7 +153,7 @@ TEST_P(CpuFormats, luma_is_the_twins_rounded_to_8_bits)
 INSTANTIATE_TEST_SUITE_P(CpuKernels, CpuFormats,
                          testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
                                          PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr,
-                                         PixelFormat::Rgbx, PixelFormat::Bgrx));
+                                         PixelFormat::Rgbx, PixelFormat::Bgrx, PixelFormat::Rgba64));
 
 class LumaGridParameters : public testing::TestWithParam<BilateralGrid::Parameters> {};
 

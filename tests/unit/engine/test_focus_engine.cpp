@@ -46,9 +46,11 @@ INSTANTIATE_TEST_SUITE_P(FocusEngine, BothMethods, testing::Values(Method::Volum
 
 /* The whole method against the twins one after the other; test_cpu_kernels holds the CPU's kernels to them.
  */
-TEST(FocusEngine, agrees_with_the_twins)
+class FocusEngineFormats : public testing::TestWithParam<PixelFormat> {};
+
+TEST_P(FocusEngineFormats, agree_with_the_twins)
 {
-    const TestStack stack({PixelFormat::Bgr, 161, 131, 10});
+    const TestStack stack({GetParam(), 161, 131, 10});
     FocusEngine engine(device_with(KernelStyle::Pixels), stack.shape, with(Method::Paper));
     Maps maps(stack.shape);
     ASSERT_TRUE(engine.compute(stack.view(), maps.outputs));
@@ -71,6 +73,9 @@ TEST(FocusEngine, agrees_with_the_twins)
     EXPECT_LE(far_off, maps.depth.size() / 100) << "within 1/255 of the range on 99 % of the pixels";
     EXPECT_LE(other_sparse, maps.depth.size() / 1000);
 }
+
+INSTANTIATE_TEST_SUITE_P(FocusEngine, FocusEngineFormats,
+                         testing::Values(PixelFormat::Bgr, PixelFormat::Rgba64));
 
 /* Kernels for CPUs and for GPUs are two ways to one depth; sizes that no level of the focus measure divides.
  */

@@ -56,4 +56,4 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{PixelFormat::Gray8, 64, 64, 2, 3}, Case{PixelFormat::Gray8, 97, 65, 10, 3},
                     Case{PixelFormat::Gray16, 80, 71, 6, 3}, Case{PixelFormat::Bgr, 129, 64, 6, 3},
                     Case{PixelFormat::Nv12, 66, 130, 4, 2}, Case{PixelFormat::I420, 100, 66, 6, 1},
-                    Case{PixelFormat::Rgbx, 90, 90, 64, 4}));
+                    Case{PixelFormat::Rgbx, 90, 90, 64, 4}, Case{PixelFormat::Rgba64, 81, 71, 6, 3}));

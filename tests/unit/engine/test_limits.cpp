@@ -89,7 +89,8 @@ TEST(Limits, what_the_method_needs_beside_the_stack_counts)
 
 TEST(Limits, volume_states_the_memory_it_takes)
 {
-    for (const auto &[format, scale] : {std::pair(PixelFormat::I420, 4u), {PixelFormat::Bgr, 2u}}) {
+    for (const auto &[format, scale] :
+         {std::pair(PixelFormat::I420, 4u), {PixelFormat::Bgr, 2u}, {PixelFormat::Rgba64, 4u}}) {
         const StackShape shape{format, 640, 480, 6};
         DepthParameters parameters;
         parameters.scale = scale;

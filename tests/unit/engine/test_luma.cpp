@@ -58,7 +58,7 @@ TEST_P(EveryFormat, chroma_of_gray_is_neutral_and_of_colours_is_not)
 INSTANTIATE_TEST_SUITE_P(Luma, EveryFormat,
                          testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
                                          PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr,
-                                         PixelFormat::Rgbx, PixelFormat::Bgrx));
+                                         PixelFormat::Rgbx, PixelFormat::Bgrx, PixelFormat::Rgba64));
 
 TEST(ReferenceImage, chroma_of_i420_and_nv12_is_the_mean_of_their_samples)
 {

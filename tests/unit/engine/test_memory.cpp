@@ -95,4 +95,4 @@ TEST(Memory, the_largest_cells_fit_the_smallest_picture)
 INSTANTIATE_TEST_SUITE_P(Memory, MemoryFormats,
                          testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
                                          PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgr,
-                                         PixelFormat::Rgbx, PixelFormat::Bgrx));
+                                         PixelFormat::Rgbx, PixelFormat::Bgrx, PixelFormat::Rgba64));

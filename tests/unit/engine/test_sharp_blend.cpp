@@ -166,4 +166,5 @@ INSTANTIATE_TEST_SUITE_P(
                     StackShape{PixelFormat::Rgb, 67, 65, 7}, StackShape{PixelFormat::Bgr, 64, 64, 2},
                     StackShape{PixelFormat::Rgbx, 67, 65, 7}, StackShape{PixelFormat::Bgrx, 129, 70, 3},
                     StackShape{PixelFormat::I420, 96, 64, 2}, StackShape{PixelFormat::Gray8, 65, 127, 64},
-                    StackShape{PixelFormat::Nv12, 81, 97, 5}));
+                    StackShape{PixelFormat::Nv12, 81, 97, 5}, StackShape{PixelFormat::Rgba64, 67, 65, 7},
+                    StackShape{PixelFormat::Rgba64, 129, 70, 3}));

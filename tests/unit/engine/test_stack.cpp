@@ -44,4 +44,17 @@ uint8_t TestStack::sample(size_t component, unsigned x, unsigned y, unsigned z) 
     return static_cast<uint8_t>(memory[rows.offset + rows.stride * y + x]);
 }
 
+unsigned TestStack::value(size_t component, unsigned x, unsigned y, unsigned z) const
+{
+    if (shape.components()[component].sample_bytes == 1)
+        return sample(component, x, y, z);
+    return sample(component, 2 * x, y, z) + 256 * sample(component, 2 * x + 1, y, z);
+}
+
+float TestStack::dn(size_t component, unsigned x, unsigned y, unsigned z) const
+{
+    const auto found = static_cast<float>(value(component, x, y, z));
+    return shape.components()[component].sample_bytes == 1 ? found : found * 255.0f / 65535.0f;
+}
+
 } // namespace dff

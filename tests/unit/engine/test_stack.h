@@ -15,7 +15,10 @@ struct TestStack {
     explicit TestStack(const StackShape &shape, unsigned seed = 1);
 
     StackView view() const { return {shape, memory, layout}; }
-    uint8_t sample(size_t component, unsigned x, unsigned y, unsigned z) const;
+    uint8_t sample(size_t component, unsigned x, unsigned y, unsigned z) const; /* byte x of the row */
+    unsigned value(size_t component, unsigned x, unsigned y,
+                   unsigned z) const;                                     /* sample x, of 8 or 16 bits */
+    float dn(size_t component, unsigned x, unsigned y, unsigned z) const; /* that in DN of 8 bits */
 
     StackShape shape;
     std::vector<RowLayout> layout;

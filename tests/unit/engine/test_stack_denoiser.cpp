@@ -225,7 +225,8 @@ class Formats : public testing::TestWithParam<Case> {};
 
 std::string name_of(const testing::TestParamInfo<Case> &info)
 {
-    static const char *const names[] = {"gray8", "gray16", "i420", "nv12", "rgb", "bgr", "rgbx", "bgrx"};
+    static const char *const names[] = {"gray8", "gray16", "i420", "nv12",  "rgb",
+                                        "bgr",   "rgbx",   "bgrx", "rgba64"};
     return std::string(names[static_cast<int>(info.param.format)]) +
            (info.param.style == KernelStyle::Tiles ? "_tiles" : "_pixels");
 }
@@ -320,7 +321,9 @@ INSTANTIATE_TEST_SUITE_P(StackDenoiser, Formats,
                                          Case{PixelFormat::I420, KernelStyle::Pixels},
                                          Case{PixelFormat::Nv12, KernelStyle::Tiles},
                                          Case{PixelFormat::Rgb, KernelStyle::Tiles},
-                                         Case{PixelFormat::Bgrx, KernelStyle::Tiles}),
+                                         Case{PixelFormat::Bgrx, KernelStyle::Tiles},
+                                         Case{PixelFormat::Rgba64, KernelStyle::Tiles},
+                                         Case{PixelFormat::Rgba64, KernelStyle::Pixels}),
                          name_of);
 
 /* Even where texture moves by a pixel only, which hardly changes a tile's mean. */

@@ -143,7 +143,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(StackShape{PixelFormat::Gray8, 64, 64, 2}, StackShape{PixelFormat::Gray8, 99, 67, 3},
                     StackShape{PixelFormat::Gray8, 120, 90, 64}, StackShape{PixelFormat::Gray16, 131, 97, 6},
                     StackShape{PixelFormat::I420, 161, 121, 10}, StackShape{PixelFormat::Nv12, 160, 121, 6},
-                    StackShape{PixelFormat::Rgb, 97, 131, 5}, StackShape{PixelFormat::Bgrx, 129, 80, 5}));
+                    StackShape{PixelFormat::Rgb, 97, 131, 5}, StackShape{PixelFormat::Bgrx, 129, 80, 5},
+                    StackShape{PixelFormat::Rgba64, 131, 97, 6}));
 
 TEST(VolumeMethod, depth_is_finer_than_a_plane)
 {

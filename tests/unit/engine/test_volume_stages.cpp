@@ -428,7 +428,7 @@ void VolumeStages::expect_fill_and_upsampling()
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
     upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);
-    if (!is_interleaved(shape.format) && shape.format != PixelFormat::Gray8)
+    if (shape.format == PixelFormat::I420 || shape.format == PixelFormat::Nv12)
         return; /* its pixels' colours are what the small planes' are: tried above */
     twin::Colours planes{Volume(shape.width, shape.height, shape.planes),
                          Volume(shape.width, shape.height, shape.planes),
@@ -438,10 +438,9 @@ void VolumeStages::expect_fill_and_upsampling()
         for (unsigned y = 0; y < shape.height; y++)
             for (unsigned x = 0; x < shape.width; x++)
                 for (unsigned c = 0; c < 3; c++)
-                    planes[c].at(x, y, z) =
-                        shape.format == PixelFormat::Gray8
-                            ? stack.sample(0, x, y, z)
-                            : stack.sample(0, x * channels.s[0] + channels.s[c + 1], y, z);
+                    planes[c].at(x, y, z) = !is_interleaved(shape.format)
+                                                ? stack.dn(0, x, y, z)
+                                                : stack.dn(0, x * channels.s[0] + channels.s[c + 1], y, z);
     const Volume expected = twin::upsample(filled, read_guide(), planes, noise.t, low.scale);
     const auto depth = read_back<uint16_t>(queue, depth_map, expected.values.size());
     const DepthEncoder encoder = DepthEncoder::index(shape.planes);
@@ -482,6 +481,8 @@ INSTANTIATE_TEST_SUITE_P(Volume, VolumeStages,
                                          Case{PixelFormat::Rgbx, 160, 131, 10, 4, true},
                                          Case{PixelFormat::Gray8, 163, 128, 5, 4, true},
                                          Case{PixelFormat::Gray16, 90, 70, 4, 2, false},
+                                         Case{PixelFormat::Rgba64, 160, 131, 6, 4, true},
+                                         Case{PixelFormat::Rgba64, 121, 99, 4, 2, false},
                                          Case{PixelFormat::I420, 133, 117, 4, 4, false},
                                          Case{PixelFormat::Nv12, 150, 66, 3, 2, true},
                                          Case{PixelFormat::Gray8, 256, 250, 3, 8, false},

@@ -81,17 +81,16 @@ Volume luma(const TestStack &stack)
     for (unsigned z = 0; z < shape.planes; z++)
         for (unsigned y = 0; y < shape.height; y++)
             for (unsigned x = 0; x < shape.width; x++) {
-                const auto byte = [&](int i) { return static_cast<unsigned>(stack.sample(0, i, y, z)); };
+                const auto value = [&](int i) { return stack.value(0, i, y, z); };
                 const int pixel = static_cast<int>(x) * channels.s[0];
+                unsigned found = 0;
                 if (is_interleaved(shape.format)) /* weights in 1/65536, so that ties round alike */
-                    result.at(x, y, z) =
-                        (19595 * byte(pixel + channels.s[1]) + 38470 * byte(pixel + channels.s[2]) +
-                         7471 * byte(pixel + channels.s[3]) + 32768) /
-                        65536;
-                else if (shape.format == PixelFormat::Gray16)
-                    result.at(x, y, z) = (byte(2 * x) + 256 * byte(2 * x + 1)) * 255.0f / 65535.0f;
+                    found = (19595 * value(pixel + channels.s[1]) + 38470 * value(pixel + channels.s[2]) +
+                             7471 * value(pixel + channels.s[3]) + 32768) /
+                            65536;
                 else
-                    result.at(x, y, z) = byte(x);
+                    found = value(x);
+                result.at(x, y, z) = found * (sample_bytes(shape.format) == 2 ? 255.0f / 65535.0f : 1.0f);
             }
     return result;
 }

@@ -208,13 +208,6 @@ Picture blend(const Planes &planes, const std::vector<Planes> &weights, int firs
     return result;
 }
 
-double sample(const TestStack &stack, size_t component, int x, int y, unsigned z)
-{
-    if (stack.shape.components()[component].sample_bytes == 1)
-        return stack.sample(component, x, y, z);
-    return stack.sample(component, 2 * x, y, z) + 256.0 * stack.sample(component, 2 * x + 1, y, z);
-}
-
 } // namespace
 
 std::vector<std::vector<double>> sharp_picture(const TestStack &stack, const std::vector<double> &positions)
@@ -229,7 +222,7 @@ std::vector<std::vector<double>> sharp_picture(const TestStack &stack, const std
             Planes planes;
             for (unsigned z = 0; z < stack.shape.planes; z++)
                 planes.push_back({width, height, [&](int x, int y) {
-                                      return sample(stack, result.size(), x * channels + k, y, z);
+                                      return stack.value(result.size(), x * channels + k, y, z);
                                   }});
             const Picture picture = blend(planes, bands, c.subsampling == 2 ? 1 : 0);
             const double most = c.sample_bytes == 1 ? 255.0 : 65535.0;

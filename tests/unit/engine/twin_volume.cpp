@@ -109,14 +109,10 @@ Volume mean_of_colours(const TestStack &stack)
 {
     const StackShape &s = stack.shape;
     return make(s.width, s.height, s.planes, [&](int x, int y, unsigned z) -> float {
-        if (s.format == PixelFormat::Gray16)
-            return (stack.sample(0, 2 * x, y, z) + 256.0f * stack.sample(0, 2 * x + 1, y, z)) * 255.0f /
-                   65535.0f;
         if (!is_interleaved(s.format))
-            return stack.sample(0, x, y, z);
+            return stack.dn(0, x, y, z);
         const int first = x * colour_channels(s.format).s[0];
-        return (stack.sample(0, first, y, z) + stack.sample(0, first + 1, y, z) +
-                stack.sample(0, first + 2, y, z)) /
+        return (stack.dn(0, first, y, z) + stack.dn(0, first + 1, y, z) + stack.dn(0, first + 2, y, z)) /
                3.0f;
     });
 }

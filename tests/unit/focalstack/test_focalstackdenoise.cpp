@@ -141,7 +141,7 @@ TEST_F(FocalStackDenoise, new_caps_begin_anew)
 {
     start("GRAY8");
     denoised(100, 1);
-    for (const char *format : {"RGB", "GRAY16_LE", "NV12"}) {
+    for (const char *format : {"RGB", "GRAY16_LE", "NV12", "RGBA64_LE"}) {
         info_ = stack_info(format);
         gst_harness_set_src_caps(harness_.get(), gst_focal_stack_info_to_caps(&info_));
         const Owned<GstBuffer> unchanged(new_stack(info_, next_, 100, 2));

@@ -61,7 +61,8 @@ TEST_P(EveryFormat, every_pixel_of_odd_sized_frames_arrives)
 }
 
 INSTANTIATE_TEST_SUITE_P(MuxStream, EveryFormat,
-                         testing::Values("GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx"));
+                         testing::Values("GRAY8", "GRAY16_LE", "I420", "NV12", "RGB", "BGR", "RGBx", "BGRx",
+                                         "RGBA64_LE"));
 
 TEST(MuxStream, caps_of_stacks_say_planes_and_stacks_a_second)
 {

@@ -145,7 +145,8 @@ Path flight(double x, double y, double speed)
 
 std::string name_of(const testing::TestParamInfo<PixelFormat> &info)
 {
-    static const char *const names[] = {"gray8", "gray16", "i420", "nv12", "rgb", "bgr", "rgbx", "bgrx"};
+    static const char *const names[] = {"gray8", "gray16", "i420", "nv12",  "rgb",
+                                        "bgr",   "rgbx",   "bgrx", "rgba64"};
     return names[static_cast<int>(info.param)];
 }
 
@@ -173,7 +174,8 @@ TEST_P(SweepFollowerFormats, what_moves_is_seen_where_it_is_in_the_middle_of_the
 
 INSTANTIATE_TEST_SUITE_P(SweepFollower, SweepFollowerFormats,
                          testing::Values(PixelFormat::Gray8, PixelFormat::Gray16, PixelFormat::I420,
-                                         PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgrx),
+                                         PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgrx,
+                                         PixelFormat::Rgba64),
                          name_of);
 
 TEST(SweepFollower, where_nothing_moves_not_a_bit_changes)

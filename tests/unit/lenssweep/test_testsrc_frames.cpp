@@ -149,7 +149,8 @@ TEST_P(Formats, show_the_same_as_the_converted_rgb)
 }
 
 INSTANTIATE_TEST_SUITE_P(TestSrc, Formats,
-                         testing::Values("I420", "GRAY8", "GRAY16_LE", "NV12", "RGB", "BGR", "RGBx", "BGRx"),
+                         testing::Values("I420", "GRAY8", "GRAY16_LE", "NV12", "RGB", "BGR", "RGBx", "BGRx",
+                                         "RGBA64_LE"),
                          [](const auto &format) { return std::string(format.param); });
 
 TEST(TestSrcFrames, a_still_scene_is_replayed_without_a_copy)

@@ -35,6 +35,7 @@ static gboolean is_stack_format(GstVideoFormat format)
     case GST_VIDEO_FORMAT_BGR:
     case GST_VIDEO_FORMAT_RGBx:
     case GST_VIDEO_FORMAT_BGRx:
+    case GST_VIDEO_FORMAT_RGBA64_LE:
         return TRUE;
     default:
         return FALSE;
