@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * The all-in-focus picture of aif.cl for CPUs, at the depth of soften_depth.cl, samples of 8 bits: one work-item a
- * strip of STRIP rows, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane
+ * strip of STRIP rows of at most MOST_COLUMNS pixels, whose positions stay in the core's cache. What differs: positions are counted in 1/256 plane
  * and, means being taken in 16 bits, at most 0.5 + N / 36 of these off; as much of 1/256 of what a sample changes from
  * one plane to the next.
  */
@@ -12,7 +12,6 @@
 #define UNIT 256 /* positions a plane */
 #define NO_POSITION 65535
 #define STRIP 16 /* rows, an even number */
-#define MOST_COLUMNS 8192
 #define STRIDE (MOST_COLUMNS + 64)
 #define NONE 65535 /* no depth around, less 1 */
 

@@ -42,11 +42,11 @@
 GST_DEBUG_CATEGORY_STATIC(gst_depth_exr_enc_debug);
 #define GST_CAT_DEFAULT gst_depth_exr_enc_debug
 
-static GstStaticPadTemplate stack_template = GST_STATIC_PAD_TEMPLATE(
-    "stack", GST_PAD_SINK, GST_PAD_REQUEST,
-    GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_NAME
-                    ", format = (string) RGB, width = (int) [ 1, 8192 ], height = (int) [ 1, "
-                    "8192 ], planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"));
+static GstStaticPadTemplate stack_template =
+    GST_STATIC_PAD_TEMPLATE("stack", GST_PAD_SINK, GST_PAD_REQUEST,
+                            GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_NAME
+                                            ", format = (string) RGB, " GST_FOCAL_STACK_SIZES
+                                            ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"));
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("image/x-exr"));
 

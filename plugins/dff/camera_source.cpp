@@ -107,7 +107,7 @@ std::string SourceRoute::fault_of(GstCaps *caps) const
         return "";
     g_autofree gchar *text = gst_caps_to_string(caps);
     return "its caps \"" + std::string(text) +
-           "\" are no frames or focal stacks of a format and size (64x64 to 8192x8192) that dffdepth takes";
+           "\" are no frames or focal stacks of a format and size (64x64 to 16384x16384) that dffdepth takes";
 }
 
 void SourceRoute::lead(GstPad *source, bool stacks)

@@ -15,8 +15,8 @@ namespace {
 /* aif_strips.cl */
 constexpr double fixed_unit = 256.0; /* UNIT */
 constexpr size_t strip = 16;
-constexpr uint32_t most_columns = 8192;
-constexpr cl_ushort no_fixed_position = 65535; /* NO_POSITION */
+constexpr uint32_t usual_columns = 8192, most_columns = 16384; /* MOST_COLUMNS */
+constexpr cl_ushort no_fixed_position = 65535;                 /* NO_POSITION */
 
 /* Component of aif_strips.cl. */
 struct PictureComponent {
@@ -41,7 +41,9 @@ AifComposer::AifComposer(std::shared_ptr<Device> device, const StackShape &shape
 {
     const char *sample = sample_bytes(shape.format) == 2 ? "-DSAMPLE=ushort" : "-DSAMPLE=uchar";
     if (in_strips_) {
-        compose_ = Program(*device_, "aif_strips").kernel("compose_strip");
+        const uint32_t columns = shape.width <= usual_columns ? usual_columns : most_columns;
+        compose_ = Program(*device_, "aif_strips", "-DMOST_COLUMNS=" + std::to_string(columns))
+                       .kernel("compose_strip");
         picture_components_ = queue_.allocate(components_.size() * sizeof(PictureComponent));
     } else {
         compose_ = Program(*device_, "aif", sample).kernel("compose");

@@ -9,8 +9,8 @@
 namespace dff {
 
 #define FOCAL_STACK_FRAME_CAPS                                                                               \
-    "video/x-raw, format = (string) " GST_FOCAL_STACK_FORMATS                                                \
-    ", width = (int) [ 1, 8192 ], height = (int) [ 1, 8192 ], framerate = (fraction) [ 0, max ]"
+    "video/x-raw, format = (string) " GST_FOCAL_STACK_FORMATS ", " GST_FOCAL_STACK_SIZES                     \
+    ", framerate = (fraction) [ 0, max ]"
 
 /* Which frames make such stacks, and which stacks such frames make: the same format and size at any rate. */
 GstCaps *frame_caps_from_stack_caps(const GstCaps *caps);
@@ -30,7 +30,7 @@ enum class Sizes {
 void answer_caps_query(GstQuery *query, GstPad *pad, GstPad *other, GstCaps *(*convert)(const GstCaps *),
                        Sizes sizes);
 
-/* "64x64", or "64x64 to 8192x8192", of the first structure. */
+/* "64x64", or "64x64 to 16384x16384", of the first structure. */
 std::string describe_sizes(const GstCaps *caps);
 
 } // namespace dff

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-/* The engine's kernels work on rows of 64 pixels or more, and are tried up to 8192. */
-#define ENGINE_SIZES "width = (int) [ 64, 8192 ], height = (int) [ 64, 8192 ]"
+/* The engine's kernels work on rows of 64 pixels or more, and are tried up to 16384. */
+#define ENGINE_SIZES "width = (int) [ 64, 16384 ], height = (int) [ 64, 16384 ]"
 
 #define STACK_CAPS_OF(sizes)                                                                                 \
     GST_FOCAL_STACK_CAPS_NAME                                                                                \
@@ -25,11 +25,12 @@ namespace dff {
 inline std::optional<std::string> wrong_size(const GstVideoInfo &frame)
 {
     const int width = GST_VIDEO_INFO_WIDTH(&frame), height = GST_VIDEO_INFO_HEIGHT(&frame);
-    if (width >= 64 && width <= 8192 && height >= 64 && height <= 8192)
+    constexpr int most = GST_FOCAL_STACK_MAX_SIDE;
+    if (width >= 64 && width <= most && height >= 64 && height <= most)
         return std::nullopt;
     return "The pictures have " + std::to_string(width) + "x" + std::to_string(height) +
-           " pixels; depth from focus takes 64x64 to 8192x8192: crop or scale the frames before they become "
-           "stacks";
+           " pixels; depth from focus takes 64x64 to 16384x16384: crop or scale the frames before they "
+           "become stacks";
 }
 
 } // namespace dff

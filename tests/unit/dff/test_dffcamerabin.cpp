@@ -340,7 +340,7 @@ TEST(DffCameraBin, pictures_too_small_are_refused_with_the_limits)
                    "lenssweeptag planes=4") +
                 "camera.depth ! fakesink",
             20);
-    for (const char *words : {"32x32", "64x64", "8192x8192"})
+    for (const char *words : {"32x32", "64x64", "16384x16384"})
         EXPECT_NE(outcome.error.find(words), std::string::npos) << outcome.error;
 }
 

@@ -1,52 +1,15 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
-#include "engine/aif_composer.h"
 #include "engine/engine_error.h"
+#include "engine/focus_engine.h"
 #include "engine/volume_method.h"
 #include "test_stack.h"
+#include "two_halves.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace dff;
-
-namespace {
-
-/* Depth and AIF of a stack whose left half is sharp in the nearest plane and the right half in the farthest.
- */
-void expect_two_halves(const StackShape &shape)
-{
-    TestStack stack(shape);
-    for (unsigned z = 0; z < shape.planes; z++)
-        for (unsigned y = 0; y < shape.height; y++)
-            for (unsigned x = 0; x < shape.width; x++) {
-                const bool sharp = x < shape.width / 2 ? z == 0 : z == shape.planes - 1;
-                const RowLayout &rows = stack.layout[z];
-                stack.memory[rows.offset + rows.stride * y + x] =
-                    std::byte(sharp ? (x / 5 + y / 5) % 2 * 200 + 20 : 120);
-            }
-    FocusEngine engine(Device::open(""), shape, {});
-    std::vector<uint16_t> depth(size_t{shape.width} * shape.height);
-    DepthOutputs outputs;
-    outputs.depth = {std::as_writable_bytes(std::span(depth)).data(), shape.width * sizeof(uint16_t)};
-    ASSERT_TRUE(engine.compute(stack.view(), outputs));
-    for (const unsigned y : {shape.height / 4, shape.height - shape.height / 4}) {
-        EXPECT_LT(depth[size_t{y} * shape.width + shape.width / 8], 6000);
-        EXPECT_GT(depth[size_t{y} * shape.width + shape.width - shape.width / 8], 59000);
-    }
-
-    AifComposer composer(Device::open(""), shape);
-    std::vector<std::byte> picture(depth.size());
-    composer.compose(stack.view(), {std::as_bytes(std::span(depth)), shape.width * sizeof(uint16_t)},
-                     AifComposer::Blend::Sharp, picture,
-                     packed_layout({shape.format, shape.width, shape.height, 1}));
-    for (const unsigned x : {shape.width / 8, shape.width - shape.width / 8})
-        EXPECT_NEAR(static_cast<double>(picture[size_t{shape.height / 2} * shape.width + x]),
-                    (x / 5 + shape.height / 2 / 5) % 2 * 200 + 20, 12.0)
-            << x;
-}
-
-} // namespace
 
 TEST(Limits, smallest_picture)
 {
@@ -58,9 +21,20 @@ TEST(Limits, most_planes)
     expect_two_halves({PixelFormat::Gray8, 512, 512, 64});
 }
 
-TEST(Limits, largest_picture)
+TEST(Limits, large_picture)
 {
     expect_two_halves({PixelFormat::Gray8, 8192, 8192, 2});
+}
+
+TEST(Limits, widest_picture)
+{
+    expect_two_halves({PixelFormat::Gray8, 16384, 64, 2});
+    expect_two_halves({PixelFormat::Rgba64, 16384, 65, 3});
+}
+
+TEST(Limits, highest_picture)
+{
+    expect_two_halves({PixelFormat::Gray8, 64, 16384, 2});
 }
 
 TEST(Limits, too_large_a_stack_is_refused_before_anything_is_allocated)

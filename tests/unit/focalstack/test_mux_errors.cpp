@@ -81,9 +81,9 @@ TEST(MuxErrors, a_size_that_no_stack_has_is_told_with_the_limits)
 {
     const std::string small =
         error_of("videotestsrc ! video/x-raw,format=GRAY8,width=32,height=48 ! identity ! "
-                 "focalstackmux ! video/x-focal-stack,width=[64,8192],height=[64,8192] ! fakesink");
+                 "focalstackmux ! video/x-focal-stack,width=[64,16384],height=[64,16384] ! fakesink");
     EXPECT_NE(small.find("32x48"), std::string::npos) << small;
-    EXPECT_NE(small.find("64x64 to 8192x8192"), std::string::npos) << small;
+    EXPECT_NE(small.find("64x64 to 16384x16384"), std::string::npos) << small;
 }
 
 TEST(MuxErrors, a_size_that_comes_late_is_told_with_the_limits)
@@ -92,12 +92,12 @@ TEST(MuxErrors, a_size_that_comes_late_is_told_with_the_limits)
     GstBus *bus = gst_bus_new();
     GstElement *mux = gst_harness_find_element(harness.get(), "focalstackmux");
     gst_element_set_bus(mux, bus);
-    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 9000, 64).c_str());
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 17000, 64).c_str());
     const Owned<GstMessage> message(gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR));
     ASSERT_TRUE(message);
     g_autoptr(GError) error = nullptr;
     gst_message_parse_error(message.get(), &error, nullptr);
-    EXPECT_STREQ(error->message, "Pictures of 9000x64 pixels cannot become stacks: 1x1 to 8192x8192 can.");
+    EXPECT_STREQ(error->message, "Pictures of 17000x64 pixels cannot become stacks: 1x1 to 16384x16384 can.");
     gst_element_set_bus(mux, nullptr);
     gst_object_unref(mux);
     gst_object_unref(bus);
@@ -109,7 +109,7 @@ TEST(MuxErrors, a_scaler_is_still_told_the_size)
         "videotestsrc num-buffers=2 ! video/x-raw,format=GRAY8,width=32,height=48 ! videoscale ! ";
     EXPECT_EQ(
         error_of((source + "m.sink_0 " + source +
-                  "m.sink_1 focalstackmux name=m ! video/x-focal-stack,width=[64,8192],height=[64,8192] ! "
+                  "m.sink_1 focalstackmux name=m ! video/x-focal-stack,width=[64,16384],height=[64,16384] ! "
                   "fakesink")
                      .c_str()),
         "");

@@ -364,7 +364,7 @@ TEST(MuxStream, a_converter_before_the_mux_is_told_what_stacks_are_wanted)
 {
     const auto harness = new_mux("focalstackmux ! capsfilter caps=video/x-focal-stack,format=NV12,width=64");
     g_autoptr(GstCaps) allowed = gst_pad_peer_query_caps(harness->srcpad, nullptr);
-    g_autoptr(GstCaps) wanted = gst_caps_from_string("video/x-raw,format=NV12,width=64,height=[1,8192],"
+    g_autoptr(GstCaps) wanted = gst_caps_from_string("video/x-raw,format=NV12,width=64,height=[1,16384],"
                                                      "framerate=[0/1,2147483647/1]");
     EXPECT_TRUE(gst_caps_is_equal(allowed, wanted));
 }

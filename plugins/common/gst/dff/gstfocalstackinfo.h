@@ -11,13 +11,20 @@ G_BEGIN_DECLS
 #define GST_FOCAL_STACK_FORMATS "{ GRAY8, GRAY16_LE, I420, NV12, RGB, BGR, RGBx, BGRx, RGBA64_LE }"
 
 /**
+ * GST_FOCAL_STACK_MAX_SIDE:
+ *
+ * The greatest width and height of a plane.
+ */
+#define GST_FOCAL_STACK_MAX_SIDE 16384
+#define GST_FOCAL_STACK_SIZES "width = (int) [ 1, 16384 ], height = (int) [ 1, 16384 ]"
+
+/**
  * GST_FOCAL_STACK_CAPS_MAKE:
  *
  * Template caps of a focal stack; the framerate is stacks per second.
  */
 #define GST_FOCAL_STACK_CAPS_MAKE                                                                            \
-    GST_FOCAL_STACK_CAPS_NAME ", format = (string) " GST_FOCAL_STACK_FORMATS                                 \
-                              ", width = (int) [ 1, 8192 ], height = (int) [ 1, 8192 ]"                      \
+    GST_FOCAL_STACK_CAPS_NAME ", format = (string) " GST_FOCAL_STACK_FORMATS ", " GST_FOCAL_STACK_SIZES      \
                               ", planes = (int) [ 2, 64 ], framerate = (fraction) [ 0, max ]"
 
 typedef struct _GstFocalStackInfo GstFocalStackInfo;
