@@ -108,8 +108,7 @@ void AifComposer::compose(const StackView &stack, const DepthView &depth, Blend 
         Pictures pictures{depth_.upload(depth.memory), picture_.target(picture),
                           depth.stride / sizeof(cl_ushort)};
         stack_.assign(stack);
-        if (blend != Blend::Sharp)
-            limit_depth(pictures, depth.blur_step);
+        limit_depth(pictures, depth.blur_step);
         if (blend != Blend::Sharp)
             noise_.run(stack_);
         if (blend == Blend::Sharp)

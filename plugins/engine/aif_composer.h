@@ -34,10 +34,10 @@ public:
         float blur_step = 0.0f; /* pixels of circle of confusion a plane; 0: not known */
     };
 
-    /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. Linear and
-     * Soft take the depth softened (kernels/soften_depth.cl), since a step in it would show, and
-     * no farther than where the blur of what is nearer beside it reaches (kernels/depth_reach.cl). Pixels
-     * without a depth become the mean of all planes. Throws EngineError. */
+    /* Writes the picture, in the stack's format, component c at `picture + layout[c].offset`. All take
+     * the depth no farther than where the blur of what is nearer beside it reaches (kernels/depth_reach.cl),
+     * Linear and Soft softened (kernels/soften_depth.cl), since a step in it would show. Pixels without a
+     * depth become the mean of all planes. Throws EngineError. */
     void compose(const StackView &stack, const DepthView &depth, Blend blend, std::span<std::byte> picture,
                  std::span<const RowLayout> layout);
 

@@ -55,16 +55,16 @@ TEST(DepthReach, agrees_with_its_twin)
  * on the ground around it. */
 TEST(DepthReach, a_picture_shows_less_of_a_halo_where_planes_lie_far_apart)
 {
-    const StackShape shape{PixelFormat::Gray8, 192, 160, 3};
+    const StackShape shape{PixelFormat::Gray8, 192, 160, 6};
     TestStack stack(shape);
     std::vector<uint16_t> depth;
     const DepthEncoder encoder = DepthEncoder::index(shape.planes);
-    constexpr int blur = 12; /* pixels a plane */
+    constexpr int blur = 6; /* pixels a plane */
     const auto is_square = [](int x, int y) { return x >= 60 && x < 120 && y >= 50 && y < 110; };
     for (int y = 0; y < 160; y++)
         for (int x = 0; x < 192; x++) {
-            depth.push_back(encoder.encode(is_square(x, y) ? 0.0 : 2.0));
-            for (int z = 0; z < 3; z++) {
+            depth.push_back(encoder.encode(is_square(x, y) ? 0.0 : 5.0));
+            for (int z = 0; z < 6; z++) {
                 const int radius = blur * z / 2;
                 int inside = 0;
                 for (int j = -radius; j <= radius; j++)
@@ -74,11 +74,11 @@ TEST(DepthReach, a_picture_shows_less_of_a_halo_where_planes_lie_far_apart)
                     static_cast<std::byte>(40 + 180 * inside / ((2 * radius + 1) * (2 * radius + 1)));
             }
         }
-    const auto worst = [&](float blur_step) {
+    const auto worst = [&](AifComposer::Blend blend, float blur_step) {
         AifComposer composer(Device::open(""), shape);
         std::vector<std::byte> picture(stack.memory.size() / shape.planes);
-        composer.compose(stack.view(), {std::as_bytes(std::span(depth)), 192 * 2, blur_step},
-                         AifComposer::Blend::Linear, picture, packed_layout({shape.format, 192, 160, 1}));
+        composer.compose(stack.view(), {std::as_bytes(std::span(depth)), 192 * 2, blur_step}, blend, picture,
+                         packed_layout({shape.format, 192, 160, 1}));
         int most = 0;
         const RowLayout rows = packed_layout({shape.format, 192, 160, 1})[0];
         for (int y = 8; y < 152; y++)
@@ -88,5 +88,6 @@ TEST(DepthReach, a_picture_shows_less_of_a_halo_where_planes_lie_far_apart)
                     most = std::max(most, static_cast<int>(picture[rows.offset + rows.stride * y + x]) - 40);
         return most;
     };
-    EXPECT_LT(worst(blur), 0.7 * worst(0.0f));
+    for (const auto blend : {AifComposer::Blend::Linear, AifComposer::Blend::Sharp})
+        EXPECT_LT(worst(blend, blur), 0.7 * worst(blend, 0.0f));
 }
