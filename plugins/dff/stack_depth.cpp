@@ -97,7 +97,7 @@ PlanePositions StackDepth::positions_of(GstBuffer *stack) const
 DepthEncoder StackDepth::flat_encoder(const PlanePositions &positions)
 {
     field_.reset();
-    const DepthEncoder encoder = make_encoder(settings_.unit, stack_.planes, positions);
+    DepthEncoder encoder = make_encoder(settings_.unit, stack_.planes, positions);
     const DepthUnit unit = encoder.scale().unit;
     if (!focus_ || focus_->is_flat() || (unit != DepthUnit::Dioptre && unit != DepthUnit::Millimetre))
         return encoder;

@@ -99,7 +99,8 @@ cv::Mat2d rays_of(const CameraCalibration &camera)
 
 uchar mean_value(const BoardPlane &board, const cv::Mat2d &rays, int x, int y)
 {
-    const cv::Vec2d ray = rays(y, x), right = rays(y, x + 1) - ray, down = rays(y + 1, x) - ray;
+    const cv::Vec2d &ray = rays(y, x);
+    const cv::Vec2d right = rays(y, x + 1) - ray, down = rays(y + 1, x) - ray;
     int sum = 0;
     for (int j = 0; j < samples; j++)
         for (int i = 0; i < samples; i++) {
