@@ -7,7 +7,9 @@
  *
  *     F_z <- max(F_z - (3 - 1.8t) (n(I_z) - mean_z n(I_z)), 0)
  *
- * so that planes are alike in noise while a place keeps what it has over all planes, which the costs go by.
+ * so that planes are alike in noise while a place keeps what it has over all planes, which the costs go by. Where all that
+ * is of one brightness has texture, as on a board of squares, n(I) is no noise: at most three times the least focus of the
+ * place over all planes is added or taken.
  */
 #include "low_picture.cl"
 
@@ -102,6 +104,7 @@ __kernel void even_noise(__global const short *focus, __global const short *smal
     const float slope = EXCESS(noise) * curve[1], bend = EXCESS(noise) * curve[2];
     for (int x = 0; x < width; x += 16) {
         int16 sum = 0;
+        short16 least = SHRT_MAX;
         for (int z = 0; z < planes; z++) {
             __global const short *cells = small + 3 * z * picture + row + x;
             const float16 light = READ_WIDE_SHORTS(cells) + READ_WIDE_SHORTS(cells + picture) +
@@ -110,11 +113,14 @@ __kernel void even_noise(__global const short *focus, __global const short *smal
             const short16 excess = to_wide_shorts(i * (slope + bend * i));
             sum += convert_int16(excess);
             SHORTS(evened + z * picture + row + x) = excess;
+            least = min(least, READ_SHORTS(focus + z * picture + row + x));
         }
         const short16 mean = to_wide_shorts(convert_float16(sum) / planes);
+        const short16 limit = add_sat(least, add_sat(least, least));
         for (int z = 0; z < planes; z++) {
             __global short *out = evened + z * picture + row + x;
-            SHORTS(out) = max(READ_SHORTS(focus + z * picture + row + x) - (READ_SHORTS(out) - mean), (short16)0);
+            const short16 taken = clamp(READ_SHORTS(out) - mean, -limit, limit);
+            SHORTS(out) = max(READ_SHORTS(focus + z * picture + row + x) - taken, (short16)0);
         }
     }
     for (int z = 0; z < planes; z++)

@@ -214,10 +214,14 @@ Volume even_noise(const Volume &focus, const Colours &small, const std::vector<f
         return (curve[0] + i * (curve[1] + i * curve[2])) / 32.0f; /* FOCUS_ONE */
     };
     return like(focus, [&](int x, int y, unsigned z) {
-        float mean = 0.0f;
-        for (unsigned plane = 0; plane < focus.planes; plane++)
+        float mean = 0.0f, limit = focus.at(x, y, 0);
+        for (unsigned plane = 0; plane < focus.planes; plane++) {
             mean += noise_at(x, y, plane) / static_cast<float>(focus.planes);
-        return std::max(focus.at(x, y, z) - (3.0f - 1.8f * t) * (noise_at(x, y, z) - mean), 0.0f);
+            limit = std::min(limit, focus.at(x, y, plane));
+        }
+        limit *= 3.0f;
+        const float excess = (3.0f - 1.8f * t) * (noise_at(x, y, z) - mean);
+        return std::max(focus.at(x, y, z) - std::clamp(excess, -limit, limit), 0.0f);
     });
 }
 
