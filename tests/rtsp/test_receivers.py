@@ -136,7 +136,7 @@ class Receivers(unittest.TestCase):
             received, expected = f'{folder}/received', f'{folder}/expected'
             with Server(f'{LIVE} ! identity name=planes', address='10.0.0.1') as server:
                 client = launch(f'rtspsrc location={server.url("/planes")} protocols=tcp latency=300 ! rtpgstdepay ! '
-                                f'focalstackmux ! dffdepth ! filesink buffer-mode=unbuffered location={received}', *there)
+                                f'focalstackmux ! dffdepth steady=off ! filesink buffer-mode=unbuffered location={received}', *there)
                 wait_for_frames(received, 6)
                 client.kill()
                 client.wait()
