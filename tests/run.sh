@@ -79,7 +79,7 @@ say "Fuzzing what reads files and packets of others"
 check "fuzzing, a minute" tests/fuzz/run.sh 60
 
 say "Checking the format of the code"
-check "clang-format" bash -c "git ls-files 'pipelines/rtsp/*.cpp' 'pipelines/rtsp/*.h' 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
+check "clang-format" bash -c "git ls-files 'pipelines/*.cpp' 'pipelines/*.h' 'plugins/*.cpp' 'plugins/*.c' 'plugins/*.h' 'tests/*.cpp' 'tests/*.c' 'tests/*.h' |
     xargs clang-format --dry-run -Werror"
 
 say "Checking the code with clang-tidy"

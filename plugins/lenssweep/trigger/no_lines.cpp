@@ -6,7 +6,8 @@ namespace dff {
 
 namespace {
 
-constexpr const char *missing = "this build has no GPIO lines: install libgpiod-dev (1.6 or 2) and build again";
+constexpr const char *missing =
+    "this build has no GPIO lines: install libgpiod-dev (1.6 or 2) and build again";
 
 } // namespace
 
