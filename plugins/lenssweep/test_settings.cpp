@@ -259,8 +259,8 @@ void install_test_properties(GObjectClass *klass)
         PROP_BREATHING,
         g_param_spec_double(
             "breathing", "Breathing",
-            "Magnification of the last plane less that of the first, about the picture's centre; 1 in the "
-            "middle of the sweep, at (planes - 1) / 2, as the true depth has it",
+            "Magnification of the last plane less that of the first, about the picture's centre; 1 at plane "
+            "planes / 2, as the true depth has it",
             -0.5, 0.5, defaults.scene.breathing, playing));
     install_range(PROP_JITTER,
                   g_param_spec_double("jitter", "Jitter",
