@@ -48,9 +48,8 @@ class Root:
 
     def run(self, *command, output=None):
         """Runs a tool. What it writes to stdout goes into the file `output` of `work`, the rest is given back."""
-        enter = ["chroot"] if os.geteuid() == 0 else ["unshare", "-r", "chroot"]
         with open(self.work / output if output else os.devnull, "wb") as file:
-            result = subprocess.run([*enter, str(self.folder), *command], check=False, text=True,
+            result = subprocess.run([*self.enter(), *command], check=False, text=True,
                                     env=ENVIRONMENT, stdin=subprocess.DEVNULL,
                                     stdout=file if output else subprocess.PIPE, stderr=subprocess.STDOUT
                                     if not output else subprocess.PIPE)
@@ -58,6 +57,14 @@ class Root:
         if result.returncode:
             raise Failed(f"{command[0]} ended with {result.returncode}:\n{text[-6000:]}")
         return text
+
+    def enter(self):
+        """What a command begins with that runs in the root."""
+        return [*([] if os.geteuid() == 0 else ["unshare", "-r"]), "chroot", str(self.folder)]
+
+    def can_be_entered(self):
+        """Containers may forbid it. chroot ends with 127 where it has come in and there is no such program."""
+        return subprocess.run([*self.enter(), "/nonexistent"], capture_output=True, check=False).returncode == 127
 
     def fresh(self, name):
         """An empty folder of this name in `work`: (as the machine sees it, as the tools see it)."""
@@ -100,6 +107,8 @@ def prepare(root, suite):
             unpack(suite, root)
             stamp.write_text(wanted, encoding="utf-8")
     root.work.mkdir(exist_ok=True)
+    if not root.can_be_entered():
+        raise Unavailable("this machine lets nobody run programs in a root of their own (chroot)")
 
 
 def unpack(suite, root):
