@@ -81,11 +81,12 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
     double shallowest = 0.0, deepest = 0.0;
     cv::minMaxIdx(scene.depth, &shallowest, &deepest);
     const double extent = std::max({1.0, deepest, 1.0 - shallowest});
-    const double largest = blur_step * (planes - 1) * extent;
+    const double steps = (planes - 1) * extent;
+    const double largest = blur_step * steps;
     if (largest > max_blur_diameter)
         throw std::invalid_argument("a blur of " + std::to_string(std::lround(largest)) +
                                     " pixels over the sweep is too much; choose a blur-step of at most " +
-                                    std::to_string(max_blur_diameter / (planes - 1) / extent));
+                                    std::to_string(max_blur_diameter / steps));
     if (stop.stop_requested())
         return;
     nearest_ = layer_of(shallowest * (planes - 1));
