@@ -16,7 +16,7 @@
  * ghosts around it. With `local-motion` each plane is changed to what it would show in the middle of the
  * sweep, (planes - 1) / 2 planes after the first one: objects are followed along their path, and what they
  * cover in a plane is filled with the background of the sweeps before. It needs a camera that stands still,
- * two sweeps to know the background, and planes 0 to planes - 1 taken in this order; where nothing moves, not
+ * two sweeps to know the background, and five planes or more, taken in their order; where nothing moves, not
  * a bit changes by it.
  *
  * A hand that shakes moves everything: put focalstackalign before it only where the camera rests between the
@@ -189,13 +189,14 @@ bool is_one_sweep(const dff::StackView &view)
     });
 }
 
-/* Nothing is followed through planes that do not show what they should, nor in rolling windows, whose planes
- * are of two sweeps; what stands behind is learned anew after them. */
+/* Nothing is followed in sweeps of few planes, through planes that do not show what they should, nor in
+ * rolling windows, whose planes are of two sweeps; what stands behind is learned anew after them. */
 void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, guint64 absent)
 {
     const Wishes wanted = wishes(state);
     const dff::StackView &view = stack.view();
-    if (!wanted.local_motion || absent != 0 || !is_one_sweep(view)) {
+    const bool has_few = view.shape.planes < dff::SweepFollower::fewest_planes;
+    if (!wanted.local_motion || has_few || absent != 0 || !is_one_sweep(view)) {
         state.follower.reset();
         state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters);
         return;

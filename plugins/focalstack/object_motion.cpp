@@ -11,7 +11,7 @@ namespace dff {
 
 namespace {
 
-constexpr int steps[] = {-2, 2};    /* planes to which flow is computed */
+constexpr int steps[] = {-2, 2};    /* planes to which flow is computed; SweepFollower takes no fewer */
 constexpr double slow = 0.25;       /* pixels of the picture a plane: below it nothing is followed */
 constexpr double spread = 12.0;     /* pixels over which velocity is spread, thrice as far where none is */
 constexpr float far_weight = 0.02F; /* of the wider spreading */
@@ -77,17 +77,15 @@ cv::Mat1b flow_picture(const SmallStack &sweep, const Silhouettes &silhouettes, 
 void find_flow(const SmallStack &sweep, const Silhouettes &silhouettes, const cv::Rect &where,
                cv::Mat2f &velocity, cv::Mat1f &apart)
 {
-    const int planes = static_cast<int>(sweep.planes()), middle = planes / 2;
+    const int middle = static_cast<int>(sweep.planes()) / 2;
     const auto flow = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_FAST);
     flow->setFinestScale(0);
     const cv::Mat1b from = flow_picture(sweep, silhouettes, static_cast<unsigned>(middle), where);
     std::vector<cv::Mat2f> flows;
     for (const int step : steps) {
-        const int z = middle + step;
-        if (z < 0 || z >= planes)
-            continue;
+        const auto z = static_cast<unsigned>(middle + step);
         cv::Mat2f found;
-        flow->calc(from, flow_picture(sweep, silhouettes, static_cast<unsigned>(z), where), found);
+        flow->calc(from, flow_picture(sweep, silhouettes, z, where), found);
         flows.emplace_back(found / step);
     }
     cv::Mat2f mean = cv::Mat2f::zeros(from.size());

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
+#include <stdexcept>
+#include <string>
 
 namespace dff {
 
@@ -91,7 +93,12 @@ void compose(cv::Mat picture, const cv::Mat &moved, const cv::Mat &background, c
 
 } // namespace
 
-SweepFollower::SweepFollower(const StackShape &shape) : shape_(shape), small_(shape) {}
+SweepFollower::SweepFollower(const StackShape &shape) : shape_(shape), small_(shape)
+{
+    if (shape.planes < fewest_planes)
+        throw std::invalid_argument("Motion is followed in sweeps of " + std::to_string(fewest_planes) +
+                                    " planes or more");
+}
 
 StillBackground::Noise SweepFollower::small_noise(const DenoiseReport &report) const
 {

@@ -12,6 +12,10 @@ namespace dff {
  * is filled with the background that the denoiser has averaged. Where nothing moves, not a bit changes. */
 class SweepFollower {
 public:
+    /* Of fewer an object covers its own background in most, and the path is worse than none. */
+    static constexpr unsigned fewest_planes = 5;
+
+    /* Throws std::invalid_argument for fewer planes. */
     explicit SweepFollower(const StackShape &shape);
 
     /* Before the sweep is denoised: looks for what moves. Gives the tiles of 8x8 pixels of each plane whose

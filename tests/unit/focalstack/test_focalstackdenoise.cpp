@@ -32,7 +32,7 @@ GstBuffer *new_stack(const GstFocalStackInfo &info, guint64 sequence, int level,
                     [&] { return static_cast<guint8>(std::clamp(noise(random), 0.0F, 255.0F)); });
     gst_buffer_unmap(stack, &map);
     gst_focal_stack_info_add_video_metas(&info, stack);
-    GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, sequence, planes);
+    GstFocalStackMeta *meta = gst_buffer_add_focal_stack_meta(stack, sequence, info.planes);
     meta->complete = TRUE;
     GST_BUFFER_PTS(stack) = sequence * 40 * GST_MSECOND;
     GST_BUFFER_DURATION(stack) = 40 * GST_MSECOND;
@@ -48,6 +48,20 @@ std::vector<guint8> bytes_of(GstBuffer *buffer)
     return bytes;
 }
 
+/* A stack of one component with a bright square of 16 pixels, which moves by 3 a plane. */
+GstBuffer *stack_with_square(const GstFocalStackInfo &info, guint64 sequence)
+{
+    GstBuffer *stack = new_stack(info, sequence, 100, static_cast<unsigned>(sequence));
+    GstMapInfo map;
+    gst_buffer_map(stack, &map, GST_MAP_WRITE);
+    const auto stride = static_cast<gsize>(GST_VIDEO_INFO_PLANE_STRIDE(&info.frame, 0));
+    for (guint z = 0; z < info.planes; z++)
+        for (gsize y = 30; y < 46; y++)
+            memset(map.data + z * info.frame.size + y * stride + 3 * (sequence * info.planes + z), 200, 16);
+    gst_buffer_unmap(stack, &map);
+    return stack;
+}
+
 /* Mean square of the distance from a level. */
 double noise_of(const std::vector<guint8> &bytes, int level)
 {
@@ -59,9 +73,10 @@ double noise_of(const std::vector<guint8> &bytes, int level)
 
 class FocalStackDenoise : public testing::Test {
 protected:
-    void start(const char *format)
+    void start(const char *format, guint count = planes)
     {
         info_ = stack_info(format);
+        info_.planes = count;
         harness_.reset(gst_harness_new("focalstackdenoise"));
         gst_harness_set_src_caps(harness_.get(), gst_focal_stack_info_to_caps(&info_));
     }
@@ -180,6 +195,23 @@ TEST_F(FocalStackDenoise, local_motion_goes_on_after_a_lost_plane)
         }
     }
     EXPECT_EQ(seen[0], seen[1]);
+}
+
+TEST_F(FocalStackDenoise, sweeps_of_few_planes_are_denoised_and_not_followed)
+{
+    for (const guint count : {2U, 3U, 4U}) {
+        std::vector<std::vector<guint8>> seen[2];
+        for (const bool local_motion : {false, true}) {
+            start("GRAY8", count);
+            g_object_set(harness_->element, "local-motion", static_cast<gboolean>(local_motion), nullptr);
+            for (guint64 sweep = 0; sweep < 6; sweep++) {
+                gst_harness_push(harness_.get(), stack_with_square(info_, sweep));
+                seen[local_motion ? 1 : 0].push_back(
+                    bytes_of(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get()));
+            }
+        }
+        EXPECT_EQ(seen[0], seen[1]) << count << " planes";
+    }
 }
 
 TEST_F(FocalStackDenoise, frames_can_be_changed_while_it_plays)

@@ -32,21 +32,26 @@ double square_at(double x, double y)
 /* Planes of one sweep, whose times are given, of a square before a background, with noise. */
 class Scene {
 public:
-    Scene(PixelFormat format, double sigma) : shape_{format, width, height, planes}, sigma_(sigma) {}
+    Scene(PixelFormat format, double sigma, unsigned count = planes)
+        : shape_{format, width, height, count}, sigma_(sigma)
+    {
+    }
 
     const StackShape &shape() const { return shape_; }
 
     std::vector<std::byte> sweep(unsigned number, const Path &path) const
     {
-        return draw([&](unsigned z) { return path(number * planes + static_cast<double>(z)); }, sigma_,
+        return draw([&](unsigned z) { return path(number * shape_.planes + static_cast<double>(z)); }, sigma_,
                     number + 1);
     }
 
     /* All planes at the middle of it, without noise. */
     std::vector<std::byte> still(unsigned number, const Path &path) const
     {
-        return draw([&](unsigned) { return path(number * planes + middle); }, 0.0, 0);
+        return draw([&](unsigned) { return path(middle_of(number)); }, 0.0, 0);
     }
+
+    double middle_of(unsigned sweep) const { return sweep * shape_.planes + (shape_.planes - 1) / 2.0; }
 
     StackView view(const std::vector<std::byte> &memory) const
     {
@@ -63,7 +68,7 @@ private:
         const auto components = shape_.components();
         const auto layout = packed_layout(shape_);
         for (size_t c = 0; c < components.size(); c++)
-            for (unsigned z = 0; z < planes; z++)
+            for (unsigned z = 0; z < shape_.planes; z++)
                 for (unsigned y = 0; y < components[c].height; y++)
                     for (unsigned x = 0; x < components[c].width; x++) {
                         const Component &of = components[c];
@@ -78,7 +83,7 @@ private:
                         const double unit = of.sample_bytes == 2 ? 256.0 : 1.0;
                         const auto sample =
                             static_cast<uint16_t>(std::lround(unit * std::clamp(value, 0.0, 255.0)));
-                        const RowLayout &rows = layout[c * planes + z];
+                        const RowLayout &rows = layout[c * shape_.planes + z];
                         std::memcpy(memory.data() + rows.offset + rows.stride * y + x * of.sample_bytes,
                                     &sample, of.sample_bytes);
                     }
@@ -128,7 +133,7 @@ double part_off(const Scene &scene, const std::vector<std::byte> &a, const std::
                                    cv::Size(side + 2 * around, side + 2 * around)) &
                           cv::Rect(0, 0, width, height);
     double off = 0.0, all = 0.0;
-    for (unsigned z = 0; z < planes; z++) {
+    for (unsigned z = 0; z < scene.shape().planes; z++) {
         cv::Mat difference, far;
         cv::absdiff(first[z][0](near), second[z][0](near), difference);
         cv::Mat(difference.reshape(1) > most * unit).copyTo(far);
@@ -177,6 +182,24 @@ INSTANTIATE_TEST_SUITE_P(SweepFollower, SweepFollowerFormats,
                                          PixelFormat::Nv12, PixelFormat::Rgb, PixelFormat::Bgrx,
                                          PixelFormat::Rgba64),
                          name_of);
+
+TEST(SweepFollower, the_fewest_planes_are_followed_and_fewer_refused)
+{
+    const Scene scene(PixelFormat::Gray8, 2.0, SweepFollower::fewest_planes);
+    const Path path = flight(20, 60, 3.0);
+    Follower follow(scene);
+    std::vector<std::byte> input, followed;
+    for (unsigned t = 0; t < 9; t++) {
+        input = scene.sweep(t, path);
+        followed = follow(input);
+    }
+    const auto truth = scene.still(8, path);
+    const cv::Point2d place = path(scene.middle_of(8));
+    EXPECT_LT(part_off(scene, followed, truth, place, 15), part_off(scene, input, truth, place, 15));
+
+    EXPECT_THROW(SweepFollower({PixelFormat::Gray8, width, height, SweepFollower::fewest_planes - 1}),
+                 std::invalid_argument);
+}
 
 TEST(SweepFollower, where_nothing_moves_not_a_bit_changes)
 {
