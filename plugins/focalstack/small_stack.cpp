@@ -17,7 +17,7 @@ int factor_of(const StackShape &shape)
     return factor;
 }
 
-/* Sums of sums: of 8 bits they fit into 16. */
+/* Of a column of a cell: 32 samples of 8 bits fit into 16. */
 template <typename Sample> struct SumOf;
 template <> struct SumOf<uint8_t> {
     using Type = uint16_t;
@@ -61,8 +61,10 @@ void take_means(const cv::Mat &picture, int channel, int side, float scale, cv::
         return take_means<Sample, stride, 4>(picture, channel, scale, means);
     case 8:
         return take_means<Sample, stride, 8>(picture, channel, scale, means);
-    default:
+    case 16:
         return take_means<Sample, stride, 16>(picture, channel, scale, means);
+    default:
+        return take_means<Sample, stride, 32>(picture, channel, scale, means);
     }
 }
 

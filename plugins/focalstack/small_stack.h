@@ -19,7 +19,7 @@ int shown_channels(const Component &component);
  * of floats, white is 256, each the mean of the samples of `factor` x `factor` pixels. */
 class SmallStack {
 public:
-    /* Pictures are at most about this wide, and no smaller than half their size is never looked at. */
+    /* Pixels. The factor is the least power of two, from 2 on, that makes pictures no wider: 32 at most. */
     static constexpr uint32_t most_width = 512;
 
     explicit SmallStack(const StackShape &shape);

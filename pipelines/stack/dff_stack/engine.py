@@ -221,8 +221,6 @@ def find_warps(lumas, tell):
                  'blank': plane.get_value('blank')} for plane in planes]
 
 
-
-
 def values_of(structure, field):
     """The values of an array in a structure."""
     found, array = structure.get_array(field)
