@@ -34,18 +34,14 @@
 #include "dffcamerabin.h"
 
 #include "aifcompose.h"
-#include "camera_source.h"
+#include "dffcamerabin_private.h"
 #include "dffdepth.h"
 #include "forwarded_properties.h"
 
-#include <gst/dff/dff.h>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 GST_DEBUG_CATEGORY(dff_camera_bin_debug);
-#define GST_CAT_DEFAULT dff_camera_bin_debug
 
 namespace {
 
@@ -57,169 +53,10 @@ enum Property : guint {
     FIRST_FORWARDED
 };
 
-/* A sink of planes stops at its first frame until the first stack is whole and everything has prerolled: two
- * of the longest sweeps. Stacks and pictures are large: two are enough to keep both sides of a branch busy.
- */
-constexpr guint planes_in_wait = 128;
-constexpr guint pictures_in_wait = 2;
-
-/* The parts of the graph. The bin owns the elements; one that is not installed is nullptr.
- *
- *   source ! planes ! mux ! stacks ! (depth_valve) ! queue ! denoise ! denoised
- *   denoised ! queue ! dffdepth ! depths ! queue ! pad depth
- *   denoised ! (stack_valve) ! queue ! aif.stack,  depths ! (aif_valve) ! queue ! aif.depth
- *   aifcompose ! pictures ! queue ! pad aif
- *
- * and, when their pads are requested,
- *
- *   pictures ! queue ! videoconvert ! light.color,  depths ! queue ! light.depth,  light ! queue ! pad
- * lightfield planes ! queue ! pad planes,  stacks ! queue ! pad stacks
- *
- * A source of stacks goes straight to the tee stacks. A valve is shut while nobody wants what lies behind it.
- * The tees let the other branches go on when a pad is not linked. */
-struct State {
-    std::string source_text = "lenssweeptestsrc"; /* under the object lock, as the source's thread reads it */
-    std::string source_error;
-    std::string missing; /* an element that is not installed, or empty */
-    GstElement *source = nullptr;
-    GstElement *planes = nullptr;
-    GstElement *mux = nullptr;
-    GstElement *stacks = nullptr;
-    GstElement *depth_valve = nullptr;
-    GstElement *denoise = nullptr;
-    GstElement *denoised = nullptr;
-    GstElement *stack_valve = nullptr;
-    GstElement *aif_valve = nullptr;
-    GstElement *dffdepth = nullptr;
-    GstElement *depths = nullptr;
-    GstElement *aifcompose = nullptr;
-    GstElement *pictures = nullptr;
-    std::map<std::string, std::vector<GstElement *>> requested; /* what a request pad needs, by its name */
-    GstPad *depth_pad = nullptr;
-    GstPad *aif_pad = nullptr;
-    std::optional<dff::SourceRoute> route;
-};
-
 } // namespace
-
-struct _GstDffCameraBin {
-    GstBin parent;
-    State *state;
-};
 
 G_DEFINE_FINAL_TYPE(GstDffCameraBin, gst_dff_camera_bin, GST_TYPE_BIN)
 GST_ELEMENT_REGISTER_DEFINE(dffcamerabin, "dffcamerabin", GST_RANK_NONE, GST_TYPE_DFF_CAMERA_BIN)
-
-static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
-    "depth", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw, format = (string) GRAY16_LE"));
-static GstStaticPadTemplate aif_template =
-    GST_STATIC_PAD_TEMPLATE("aif", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw"));
-static GstStaticPadTemplate lightfield_template =
-    GST_STATIC_PAD_TEMPLATE("lightfield", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS("video/x-raw"));
-static GstStaticPadTemplate planes_template =
-    GST_STATIC_PAD_TEMPLATE("planes", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS("video/x-raw"));
-static GstStaticPadTemplate stacks_template = GST_STATIC_PAD_TEMPLATE(
-    "stacks", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(GST_FOCAL_STACK_CAPS_NAME));
-
-static GstElement *add(GstDffCameraBin *self, const char *factory, const char *name)
-{
-    GstElement *element = gst_element_factory_make(factory, name);
-    if (element)
-        gst_bin_add(GST_BIN(self), element);
-    else
-        self->state->missing = factory;
-    return element;
-}
-
-static GstElement *add_queue(GstDffCameraBin *self, guint in_wait = pictures_in_wait)
-{
-    GstElement *queue = add(self, "queue", nullptr);
-    if (queue)
-        g_object_set(queue, "max-size-buffers", in_wait, "max-size-bytes", 0, "max-size-time", guint64{0},
-                     nullptr);
-    return queue;
-}
-
-static GstElement *add_tee(GstDffCameraBin *self, const char *name)
-{
-    GstElement *tee = add(self, "tee", name);
-    if (tee)
-        g_object_set(tee, "allow-not-linked", TRUE, nullptr);
-    return tee;
-}
-
-static GstElement *add_valve(GstDffCameraBin *self, const char *name)
-{
-    GstElement *valve = add(self, "valve", name);
-    if (valve)
-        g_object_set(valve, "drop", TRUE, nullptr);
-    return valve;
-}
-
-/* Opens and shuts the valves for what is linked. */
-static void set_valves(GstDffCameraBin *self)
-{
-    const State &state = *self->state;
-    const bool aif = gst_pad_is_linked(state.aif_pad) || state.requested.contains("lightfield");
-    const bool depth = gst_pad_is_linked(state.depth_pad) || aif;
-    GST_DEBUG_OBJECT(self, "Depth is %s, pictures are %s", depth ? "computed" : "not wanted",
-                     aif ? "composed" : "not wanted");
-    g_object_set(state.depth_valve, "drop", !depth, nullptr);
-    g_object_set(state.stack_valve, "drop", !aif, nullptr);
-    g_object_set(state.aif_valve, "drop", !aif, nullptr);
-}
-
-/* A pad of the bin behind a queue. The tee between them takes what comes while the pad is not linked. */
-static GstPad *add_output(GstDffCameraBin *self, GstStaticPadTemplate *static_template, GstElement *queue)
-{
-    GstElement *tee = add_tee(self, nullptr);
-    gst_element_link(queue, tee);
-    gst_element_sync_state_with_parent(tee);
-    g_autoptr(GstPadTemplate) pad_template = gst_static_pad_template_get(static_template);
-    g_autoptr(GstPad) target = gst_element_request_pad_simple(tee, "src_%u");
-    GstPad *pad = gst_ghost_pad_new_from_template(static_template->name_template, target, pad_template);
-    g_signal_connect_swapped(pad, "linked", G_CALLBACK(set_valves), self);
-    g_signal_connect_swapped(pad, "unlinked", G_CALLBACK(set_valves), self);
-    gst_pad_set_active(pad, GST_STATE(self) > GST_STATE_READY);
-    gst_element_add_pad(GST_ELEMENT(self), pad);
-    return pad;
-}
-
-static void build_graph(GstDffCameraBin *self)
-{
-    State &state = *self->state;
-    GstElement *denoise_queue = add_queue(self), *stack_queue = add_queue(self),
-               *aif_stack_queue = add_queue(self), *aif_depth_queue = add_queue(self),
-               *depth_queue = add_queue(self), *aif_queue = add_queue(self);
-    state.planes = add_tee(self, "plane-tee"); /* a pipeline's own elements may be called planes */
-    state.mux = add(self, "focalstackmux", "mux");
-    state.stacks = add_tee(self, "stacks");
-    state.depth_valve = add_valve(self, "depth-valve");
-    state.denoise = add(self, "focalstackdenoise", "denoise");
-    state.denoised = add_tee(self, "denoised");
-    state.stack_valve = add_valve(self, "stack-valve");
-    state.aif_valve = add_valve(self, "aif-valve");
-    state.dffdepth = add(self, "dffdepth", "dffdepth");
-    state.depths = add_tee(self, "depths");
-    state.aifcompose = add(self, "aifcompose", "aifcompose");
-    state.pictures = add_tee(self, "pictures");
-    if (!state.missing.empty())
-        return;
-
-    gst_element_link_pads(state.planes, "src_%u", state.mux, "sink"); /* not one of a plane */
-    gst_element_link_pads(state.mux, "src", state.stacks, "sink");
-    g_object_set(state.denoise, "frames", 1U, nullptr); /* leaves the stacks as they are */
-    gst_element_link_many(state.stacks, state.depth_valve, denoise_queue, state.denoise, state.denoised,
-                          nullptr);
-    gst_element_link_many(state.denoised, stack_queue, state.dffdepth, state.depths, depth_queue, nullptr);
-    gst_element_link_many(state.denoised, state.stack_valve, aif_stack_queue, nullptr);
-    gst_element_link_many(state.depths, state.aif_valve, aif_depth_queue, nullptr);
-    gst_element_link_pads(aif_stack_queue, "src", state.aifcompose, "stack");
-    gst_element_link_pads(aif_depth_queue, "src", state.aifcompose, "depth");
-    gst_element_link_many(state.aifcompose, state.pictures, aif_queue, nullptr);
-    state.depth_pad = add_output(self, &depth_template, depth_queue);
-    state.aif_pad = add_output(self, &aif_template, aif_queue);
-}
 
 /* What comes from the source cannot be used. */
 static void post_source_fault(GstDffCameraBin *self, const std::string &reason)
@@ -233,7 +70,7 @@ static void post_source_fault(GstDffCameraBin *self, const std::string &reason)
 
 static void replace_source(GstDffCameraBin *self)
 {
-    State &state = *self->state;
+    GstDffCameraBinState &state = *self->state;
     if (!state.missing.empty())
         return;
     if (state.source) {
@@ -256,7 +93,7 @@ static void replace_source(GstDffCameraBin *self)
 static GstStateChangeReturn change_state(GstElement *element, GstStateChange transition)
 {
     auto *self = GST_DFF_CAMERA_BIN(element);
-    const State &state = *self->state;
+    const GstDffCameraBinState &state = *self->state;
     if (transition == GST_STATE_CHANGE_NULL_TO_READY || transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
         if (!state.missing.empty()) {
             GST_ELEMENT_ERROR(
@@ -271,93 +108,6 @@ static GstStateChangeReturn change_state(GstElement *element, GstStateChange tra
         }
     }
     return GST_ELEMENT_CLASS(gst_dff_camera_bin_parent_class)->change_state(element, transition);
-}
-
-/* lightfieldcompose between the pictures, the depths and `queue`; its parts are `parts`, nothing if it is not
- * installed. */
-static std::vector<GstElement *> add_light_field(GstDffCameraBin *self, GstElement *queue)
-{
-    State &state = *self->state;
-    GstElement *compose = add(self, "lightfieldcompose", "lightfield");
-    if (!compose) {
-        GST_ELEMENT_WARNING(self, CORE, MISSING_PLUGIN,
-                            ("The pad lightfield needs the element lightfieldcompose: install its plug-in"),
-                            (nullptr));
-        state.missing.clear();
-        return {};
-    }
-    GstElement *colour_queue = add_queue(self), *depth_queue = add_queue(self),
-               *convert = add(self, "videoconvert", nullptr);
-    gst_element_link_many(state.pictures, colour_queue, convert, nullptr);
-    gst_element_link(state.depths, depth_queue);
-    gst_element_link_pads(convert, "src", compose, "color");
-    gst_element_link_pads(depth_queue, "src", compose, "depth");
-    gst_element_link(compose, queue);
-    return {compose, convert, colour_queue, depth_queue};
-}
-
-/* Takes an element out of the bin, and away from the tee before it. */
-static void remove(GstDffCameraBin *self, GstElement *element)
-{
-    g_autoptr(GstPad) sink = gst_element_get_static_pad(element, "sink");
-    g_autoptr(GstPad) before = sink ? gst_pad_get_peer(sink) : nullptr;
-    gst_element_set_state(element, GST_STATE_NULL);
-    gst_bin_remove(GST_BIN(self), element);
-    g_autoptr(GstElement) tee = before ? gst_pad_get_parent_element(before) : nullptr;
-    const State &state = *self->state;
-    if (tee && (tee == state.pictures || tee == state.depths || tee == state.planes || tee == state.stacks))
-        gst_element_release_request_pad(tee, before);
-}
-
-static GstPad *request_new_pad(GstElement *element, GstPadTemplate *pad_template, const gchar *,
-                               const GstCaps *)
-{
-    auto *self = GST_DFF_CAMERA_BIN(element);
-    State &state = *self->state;
-    const std::string name = GST_PAD_TEMPLATE_NAME_TEMPLATE(pad_template);
-    if (state.requested.contains(name) || !state.missing.empty()) {
-        GST_WARNING_OBJECT(self, "The pad %s is in use already, or elements are missing", name.c_str());
-        return nullptr;
-    }
-    GstElement *queue = add_queue(self, name == "planes" ? planes_in_wait : pictures_in_wait);
-    std::vector<GstElement *> parts;
-    GstStaticPadTemplate *static_template = &lightfield_template;
-    if (name == "lightfield") {
-        parts = add_light_field(self, queue);
-        if (parts.empty()) {
-            remove(self, queue);
-            return nullptr;
-        }
-    } else {
-        const bool planes = name == "planes";
-        static_template = planes ? &planes_template : &stacks_template;
-        gst_element_link(planes ? state.planes : state.stacks, queue);
-    }
-    parts.insert(parts.begin(), queue);
-    state.requested[name] = parts;
-    GstPad *pad = add_output(self, static_template, queue);
-    for (GstElement *part : parts)
-        gst_element_sync_state_with_parent(part);
-    set_valves(self);
-    GST_INFO_OBJECT(self, "The pad %s is there", name.c_str());
-    return pad;
-}
-
-static void release_pad(GstElement *element, GstPad *pad)
-{
-    auto *self = GST_DFF_CAMERA_BIN(element);
-    State &state = *self->state;
-    const std::string name = GST_PAD_NAME(pad);
-    g_autoptr(GstPad) target = gst_ghost_pad_get_target(GST_GHOST_PAD(pad));
-    g_autoptr(GstElement) last = gst_pad_get_parent_element(target);
-    gst_pad_set_active(pad, FALSE);
-    gst_element_remove_pad(element, pad);
-    remove(self, last);
-    for (GstElement *part : state.requested[name])
-        remove(self, part);
-    state.requested.erase(name);
-    set_valves(self);
-    GST_INFO_OBJECT(self, "The pad %s is gone", name.c_str());
 }
 
 /* The stats of all elements that have some, by their names. */
@@ -393,7 +143,7 @@ static const char *denoiser_property(guint id)
 }
 
 /* The parts whose properties are the bin's. */
-static std::vector<GstElement *> forwarded_to(const State &state)
+static std::vector<GstElement *> forwarded_to(const GstDffCameraBinState &state)
 {
     return {state.dffdepth, state.aifcompose};
 }
@@ -401,7 +151,7 @@ static std::vector<GstElement *> forwarded_to(const State &state)
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
     auto *self = GST_DFF_CAMERA_BIN(object);
-    State &state = *self->state;
+    GstDffCameraBinState &state = *self->state;
     if (const char *name = denoiser_property(id)) {
         if (state.denoise)
             g_object_set_property(G_OBJECT(state.denoise), name, value);
@@ -467,8 +217,8 @@ static void finalize(GObject *object)
 
 static void gst_dff_camera_bin_init(GstDffCameraBin *self)
 {
-    self->state = new State;
-    build_graph(self);
+    self->state = new GstDffCameraBinState;
+    gst_dff_camera_bin_build_graph(self);
     self->state->route.emplace(self->state->planes, self->state->mux, self->state->stacks,
                                [self](const std::string &reason) { post_source_fault(self, reason); });
     replace_source(self);
@@ -517,11 +267,9 @@ static void gst_dff_camera_bin_class_init(GstDffCameraBinClass *klass)
                                       {GST_TYPE_DFF_DEPTH, GST_TYPE_AIF_COMPOSE});
 
     element_class->change_state = change_state;
-    element_class->request_new_pad = request_new_pad;
-    element_class->release_pad = release_pad;
-    for (GstStaticPadTemplate *pad_template :
-         {&depth_template, &aif_template, &lightfield_template, &planes_template, &stacks_template})
-        gst_element_class_add_static_pad_template(element_class, pad_template);
+    element_class->request_new_pad = gst_dff_camera_bin_request_new_pad;
+    element_class->release_pad = gst_dff_camera_bin_release_pad;
+    gst_dff_camera_bin_add_pad_templates(element_class);
     gst_element_class_set_static_metadata(element_class, "Depth camera", "Source/Video",
                                           "Depth and all-in-focus pictures of a camera with a swept focus",
                                           "the gst-plugins-dff authors");

@@ -28,64 +28,20 @@
  */
 #include "dffdepth.h"
 
-#include "depth_statistics.h"
-#include "dffdepth_properties.h"
-#include "gstcl/compute_latency.h"
-#include "gstcl/device_context.h"
+#include "dffdepth_private.h"
 #include "gstcl/engine_caps.h"
 #include "gstcl/engine_message.h"
-#include "gstcl/mapped_stack.h"
-#include "gstcl/start_progress.h"
-#include "output_pads.h"
-#include "peak_watch.h"
-#include "stack_depth.h"
 
 #include <gst/dff/dff.h>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <utility>
 
 GST_DEBUG_CATEGORY(dff_depth_debug);
-#define GST_CAT_DEFAULT dff_depth_debug
 
 namespace {
 
 constexpr guint property_stats = dff::depth_properties_end;
 
-/* What dffdepth knows between two buffers. */
-struct State {
-    explicit State(GstElement *element) : device(element) {}
-
-    /* Guards settings, statistics and latency. Held for copies only: never while the engine works or a pad
-     * pushes. */
-    std::mutex mutex;
-    dff::DepthSettings settings;
-    bool settings_changed = true;
-    dff::DepthStatistics statistics;
-    dff::ComputeLatency latency;
-
-    dff::OutputPads outputs;
-    dff::DeviceContext device;
-
-    /* The streaming thread's own. */
-    dff::StackDepth depth;
-    bool has_caps = false;
-    dff::StreamSegment segment{};
-    dff::StackClock clock;
-    guint64 next_stack = 0;
-    std::string last_warning;
-    dff::PeakWatch peaks;
-    bool told_of_no_peaks = false;
-};
-
 } // namespace
-
-struct _GstDffDepth {
-    GstElement parent;
-    GstPad *sink;
-    State *state;
-};
 
 G_DEFINE_FINAL_TYPE(GstDffDepth, gst_dff_depth, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE(dffdepth, "dffdepth", GST_RANK_NONE, GST_TYPE_DFF_DEPTH)
@@ -104,156 +60,10 @@ static GstStaticPadTemplate confidence_template =
 static GstStaticPadTemplate motion_template =
     GST_STATIC_PAD_TEMPLATE("motion", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
 
-static dff::DepthSettings settings_of(State &state)
+static dff::DepthSettings settings_of(GstDffDepthState &state)
 {
     const std::lock_guard lock(state.mutex);
     return state.settings;
-}
-
-/* The settings, if they have changed since the last call. */
-static std::optional<dff::DepthSettings> changed_settings(State &state)
-{
-    const std::lock_guard lock(state.mutex);
-    if (!state.settings_changed)
-        return std::nullopt;
-    state.settings_changed = false;
-    return state.settings;
-}
-
-/* Counts a stack, and announces the latency if it has grown. */
-static void account(GstDffDepth *self, GstClockTime compute_time, bool is_first, bool known)
-{
-    State &state = *self->state;
-    bool has_grown = false;
-    {
-        const std::lock_guard lock(state.mutex);
-        state.statistics.add(state.depth, known, compute_time);
-        has_grown = state.latency.add(compute_time, is_first);
-    }
-    if (has_grown)
-        gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
-}
-
-/* A cause is told once, however many stacks it costs. */
-static bool is_news(State &state, const std::string &warning)
-{
-    return std::exchange(state.last_warning, warning) != warning;
-}
-
-static void look_for_peaks(GstDffDepth *self, const dff::StackShape &shape,
-                           const dff::OutputPicture &confidence)
-{
-    State &state = *self->state;
-    if (dff::PeakWatch::has_peaks(confidence.pixels, confidence.stride, shape.width, shape.height))
-        return;
-    GST_WARNING_OBJECT(self, "no pixel of stack %" G_GUINT64_FORMAT " is sharper in one plane",
-                       state.next_stack);
-    if (!std::exchange(state.told_of_no_peaks, true))
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("All planes are equally sharp, everywhere in the picture: the depth says nothing. Look whether "
-             "the lens moves, and whether each frame is of the plane it is said to be"),
-            (nullptr));
-}
-
-/* Returns false where nothing can be told of the stack. */
-static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *stack, dff::DepthMaps &maps)
-{
-    if (GST_BUFFER_FLAG_IS_SET(stack, GST_BUFFER_FLAG_GAP))
-        return false;
-    State &state = *self->state;
-    try {
-        dff::DepthOutputs outputs = maps.outputs();
-        const bool is_due = state.peaks.is_due();
-        if (is_due && !outputs.confidence.pixels)
-            outputs.confidence = {state.peaks.room(size_t{view.shape.width} * view.shape.height).data(),
-                                  view.shape.width};
-        const bool known = state.depth.compute(view, outputs);
-        if (is_due && known)
-            look_for_peaks(self, view.shape, outputs.confidence);
-        return known;
-    } catch (const dff::EngineError &error) {
-        GST_WARNING_OBJECT(self, "%s", error.what());
-        if (is_news(state, error.what()))
-            dff::post_engine_warning(GST_ELEMENT(self), error);
-        return false;
-    }
-}
-
-/* Returns false, and says why, if the stack says of its planes what cannot be. */
-static bool take_positions(GstDffDepth *self, GstBuffer *stack)
-{
-    State &state = *self->state;
-    const auto problem = state.depth.take_positions(stack);
-    if (!problem)
-        return true;
-    GST_WARNING_OBJECT(self, "no depth of %" GST_PTR_FORMAT ": %s", stack, problem->c_str());
-    if (is_news(state, *problem))
-        GST_ELEMENT_WARNING(self, STREAM, FORMAT, ("A stack has no depth: %s", problem->c_str()),
-                            ("Its depth map is all 0, with the flags GAP and CORRUPTED."));
-    return false;
-}
-
-static GstFlowReturn gst_dff_depth_chain(GstPad *, GstObject *parent, GstBuffer *buffer)
-{
-    GstDffDepth *self = GST_DFF_DEPTH(parent);
-    State &state = *self->state;
-    g_autoptr(GstBuffer) stack = buffer;
-
-    GST_LOG_OBJECT(self, "stack %" G_GUINT64_FORMAT ": %" GST_PTR_FORMAT, state.next_stack, stack);
-    if (!state.has_caps) {
-        GST_ELEMENT_ERROR(self, CORE, NEGOTIATION,
-                          ("A stack came before its caps: put a capsfilter with " GST_FOCAL_STACK_CAPS_NAME
-                           ", format, width, height, planes and framerate before dffdepth"),
-                          (nullptr));
-        return GST_FLOW_NOT_NEGOTIATED;
-    }
-    try {
-        const dff::MappedStack mapped(state.depth.stack(), stack, state.depth.device());
-        if (const auto settings = changed_settings(state)) {
-            GST_DEBUG_OBJECT(self, "new settings from stack %" G_GUINT64_FORMAT " on", state.next_stack);
-            state.depth.set_settings(*settings);
-        }
-        const bool is_first = state.depth.is_at_start();
-        std::optional<dff::StartProgress> progress;
-        if (is_first)
-            progress.emplace(GST_ELEMENT(self));
-        const GstClockTime asked = gst_util_get_timestamp();
-        state.depth.prepare();
-        if (is_first)
-            GST_INFO_OBJECT(self, "the kernels were waited for %" GST_TIME_FORMAT,
-                            GST_TIME_ARGS(gst_util_get_timestamp() - asked));
-        const bool has_positions = take_positions(self, stack);
-        const GstDepthInfo depth = state.depth.facts(stack, state.next_stack);
-        dff::DepthMaps maps(state.outputs.outputs(), state.depth.stack().frame, depth, state.segment);
-
-        const GstClockTime start = gst_util_get_timestamp();
-        const bool known = has_positions && compute(self, mapped.view(), stack, maps);
-        progress.reset();
-        if (!known)
-            maps.blank();
-        maps.stamp(
-            stack,
-            state.clock.next(state.depth.stack().frame, GST_BUFFER_PTS(stack), GST_BUFFER_DURATION(stack)),
-            state.next_stack);
-        if (const float blur_step = state.depth.blur_step(); known && blur_step > 0.0f) {
-            GST_DEBUG_OBJECT(self, "stack %" G_GUINT64_FORMAT ": %.2f px of blur a plane", state.next_stack,
-                             blur_step);
-            maps.add_blur_step(blur_step);
-        }
-        account(self, gst_util_get_timestamp() - start, is_first, known);
-        GST_DEBUG_OBJECT(self, "stack %" G_GUINT64_FORMAT " (number %" G_GUINT64_FORMAT ") %s",
-                         state.next_stack, depth.sequence, known ? "has depth" : "has no depth");
-        state.next_stack++;
-        return state.outputs.push(maps);
-    } catch (const dff::EngineError &error) {
-        dff::post_engine_error(GST_ELEMENT(self), error);
-    } catch (const std::invalid_argument &error) {
-        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
-    } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", error.what()), (nullptr));
-    }
-    return GST_FLOW_ERROR;
 }
 
 static bool is_live(GstDffDepth *self)
@@ -268,7 +78,7 @@ static bool is_live(GstDffDepth *self)
 
 static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
 {
-    State &state = *self->state;
+    GstDffDepthState &state = *self->state;
     GstFocalStackInfo info;
 
     state.has_caps = false;
@@ -283,7 +93,7 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
     }
     GST_INFO_OBJECT(self, "stacks are %" GST_PTR_FORMAT, caps);
     try {
-        if (const auto settings = changed_settings(state))
+        if (const auto settings = gst_dff_depth_changed_settings(state))
             state.depth.set_settings(*settings);
         state.depth.set_stack(info);
         state.depth.set_live(is_live(self));
@@ -296,7 +106,7 @@ static gboolean set_caps(GstDffDepth *self, const GstCaps *caps)
 }
 
 /* A stream of bytes (a file) becomes a stream in time. */
-static void set_segment(State &state, GstEvent *event)
+static void set_segment(GstDffDepthState &state, GstEvent *event)
 {
     const GstSegment *segment = nullptr;
     gst_event_parse_segment(event, &segment);
@@ -306,7 +116,7 @@ static void set_segment(State &state, GstEvent *event)
 static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEvent *event)
 {
     GstDffDepth *self = GST_DFF_DEPTH(parent);
-    State &state = *self->state;
+    GstDffDepthState &state = *self->state;
 
     switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
@@ -345,7 +155,7 @@ static gboolean gst_dff_depth_sink_event(GstPad *pad, GstObject *parent, GstEven
 
 static gboolean gst_dff_depth_query(GstPad *pad, GstObject *parent, GstQuery *query)
 {
-    State &state = *GST_DFF_DEPTH(parent)->state;
+    GstDffDepthState &state = *GST_DFF_DEPTH(parent)->state;
     gboolean live = FALSE;
     GstClockTime least = 0, most = GST_CLOCK_TIME_NONE;
 
@@ -395,7 +205,7 @@ static void gst_dff_depth_release_pad(GstElement *element, GstPad *pad)
 
 static bool open_device(GstDffDepth *self)
 {
-    State &state = *self->state;
+    GstDffDepthState &state = *self->state;
     try {
         std::shared_ptr<dff::Device> device = state.device.open(settings_of(state).device);
         GST_INFO_OBJECT(self, "computing on %s", device->name().c_str());
@@ -409,7 +219,7 @@ static bool open_device(GstDffDepth *self)
 
 static bool load_calibration(GstDffDepth *self)
 {
-    State &state = *self->state;
+    GstDffDepthState &state = *self->state;
     const std::string file = settings_of(state).calibration;
     try {
         if (file.empty())
@@ -427,7 +237,7 @@ static bool load_calibration(GstDffDepth *self)
 static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstStateChange transition)
 {
     GstDffDepth *self = GST_DFF_DEPTH(element);
-    State &state = *self->state;
+    GstDffDepthState &state = *self->state;
 
     if (transition == GST_STATE_CHANGE_NULL_TO_READY && !open_device(self))
         return GST_STATE_CHANGE_FAILURE;
@@ -458,7 +268,7 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
 
 static void gst_dff_depth_set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
 {
-    State &state = *GST_DFF_DEPTH(object)->state;
+    GstDffDepthState &state = *GST_DFF_DEPTH(object)->state;
     const std::lock_guard lock(state.mutex);
     if (!dff::set_depth_property(state.settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, pspec);
@@ -467,7 +277,7 @@ static void gst_dff_depth_set_property(GObject *object, guint id, const GValue *
 
 static void gst_dff_depth_get_property(GObject *object, guint id, GValue *value, GParamSpec *pspec)
 {
-    State &state = *GST_DFF_DEPTH(object)->state;
+    GstDffDepthState &state = *GST_DFF_DEPTH(object)->state;
     const std::lock_guard lock(state.mutex);
     if (id == property_stats)
         g_value_take_boxed(value, state.statistics.to_structure());
@@ -483,7 +293,7 @@ static void gst_dff_depth_finalize(GObject *object)
 
 static void gst_dff_depth_init(GstDffDepth *self)
 {
-    self->state = new State(GST_ELEMENT(self));
+    self->state = new GstDffDepthState(GST_ELEMENT(self));
     self->sink = gst_pad_new_from_static_template(&sink_template, "sink");
     gst_pad_set_chain_function(self->sink, gst_dff_depth_chain);
     gst_pad_set_event_function(self->sink, gst_dff_depth_sink_event);
