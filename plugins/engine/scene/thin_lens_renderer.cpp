@@ -78,6 +78,8 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
                                    const std::stop_token &stop)
     : sharp_(scene.color), blur_step_(blur_step)
 {
+    if (stop.stop_requested()) /* then the scene may not have been drawn to its end either */
+        return;
     double shallowest = 0.0, deepest = 0.0;
     cv::minMaxIdx(scene.depth, &shallowest, &deepest);
     const double extent = std::max({1.0, deepest, 1.0 - shallowest});
@@ -87,8 +89,6 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
         throw std::invalid_argument("a blur of " + std::to_string(std::lround(largest)) +
                                     " pixels over the sweep is too much; choose a blur-step of at most " +
                                     std::to_string(max_blur_diameter / steps));
-    if (stop.stop_requested())
-        return;
     nearest_ = layer_of(shallowest * (planes - 1));
     farthest_ = layer_of(deepest * (planes - 1));
     tiles_ = cut_scene(scene.color, layers_of(scene.depth, planes), disk_reach(largest), stop);

@@ -161,6 +161,16 @@ TEST(ThinLens, rendering_ends_when_it_is_told_to)
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
+/* Its depth may be whatever lay in the memory. */
+TEST(ThinLens, a_scene_that_was_told_to_end_is_not_looked_at)
+{
+    std::stop_source stop;
+    stop.request_stop();
+    Scene scene = dff::make_shapes({64, 64}, 0);
+    scene.depth.setTo(1e12F);
+    EXPECT_NO_THROW(ThinLensRenderer(scene, planes, 2.0, stop.get_token()).render(0.0, stop.get_token()));
+}
+
 TEST(ThinLens, an_impossible_blur_is_refused)
 {
     EXPECT_THROW(ThinLensRenderer(flat_scene({8, 8}, {}, 0.5F), 64, 100.0), std::invalid_argument);
