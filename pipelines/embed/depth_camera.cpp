@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * All-in-focus pictures, depth in millimetres and what is known of both, as arrays; from one source after the other:
+ * All-in-focus pictures, depth in millimetres and what is known of both, as arrays, from sources in turn:
  *
  *     depth_camera                                   a simulated camera
  *     depth_camera "lenssweepsrc lens=... planes=6"  a real one
  *     depth_camera "lenssweeptestsrc num-buffers=60" "lenssweepsrc num-buffers=600"
  *
- *     c++ -std=c++20 depth_camera.cpp -o depth_camera $(pkg-config --cflags --libs gstreamer-dff-1.0 gstreamer-app-1.0)
+ *     c++ -std=c++20 -o depth_camera depth_camera.cpp \
+ *         $(pkg-config --cflags --libs gstreamer-dff-1.0 gstreamer-app-1.0)
  */
 #include <gst/app/gstappsink.h>
 #include <gst/dff/dff.h>
@@ -16,8 +17,8 @@
 #include <string>
 #include <vector>
 
-/* The next sample of a sink; nullptr at the end of the stream, and when there is an error, which goes to `failure`.
- * Who waits without looking at the bus waits for ever for a source that cannot start. */
+/* The next sample of a sink; nullptr at the end of the stream, and when there is an error, which goes to
+ * `failure`. Who waits without looking at the bus waits for ever for a source that cannot start. */
 static GstSample *next_sample(GstElement *sink, GstBus *bus, GstMessage **failure)
 {
     while (!*failure) {
@@ -68,7 +69,8 @@ int main(int argc, char **argv)
 
     g_autoptr(GError) error = nullptr;
     g_autoptr(GstElement) pipeline = gst_parse_launch(
-        "dffcamerabin name=camera unit=millimetre  camera.depth ! appsink name=depth sync=false max-buffers=2 "
+        "dffcamerabin name=camera unit=millimetre  camera.depth ! appsink name=depth sync=false "
+        "max-buffers=2 "
         "camera.aif ! videoconvert ! video/x-raw,format=RGB ! appsink name=aif sync=false max-buffers=2",
         &error);
     if (error) {
@@ -85,14 +87,17 @@ int main(int argc, char **argv)
         const bool starts = gst_element_set_state(pipeline, GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE;
         g_autoptr(GstMessage) failure = nullptr;
         for (int count = 0; starts; count++) {
-            const Frame depth(next_sample(depth_sink, bus, &failure)), aif(next_sample(aif_sink, bus, &failure));
+            const Frame depth(next_sample(depth_sink, bus, &failure)),
+                aif(next_sample(aif_sink, bus, &failure));
             if (depth.bytes.empty() || aif.bytes.empty())
                 break;
             const size_t middle = static_cast<size_t>(depth.height / 2 * depth.width + depth.width / 2);
-            const auto *millimetres = reinterpret_cast<const guint16 *>(depth.bytes.data()); /* 0 is unknown */
+            const auto *millimetres =
+                reinterpret_cast<const guint16 *>(depth.bytes.data()); /* 0 is unknown */
             const guint8 *rgb = &aif.bytes[3 * middle];
-            g_print("sweep %" G_GUINT64_FORMAT " of %g to %g dioptres: %d mm, colour %d %d %d\n", depth.depth.sweep,
-                    depth.depth.near, depth.depth.far, millimetres[middle], rgb[0], rgb[1], rgb[2]);
+            g_print("sweep %" G_GUINT64_FORMAT " of %g to %g dioptres: %d mm, colour %d %d %d\n",
+                    depth.depth.sweep, depth.depth.near, depth.depth.far, millimetres[middle], rgb[0], rgb[1],
+                    rgb[2]);
             if (count == 2) /* any property of dffdepth and aifcompose can change while it runs */
                 gst_util_set_object_arg(G_OBJECT(camera), "blend", "sharp");
         }
