@@ -104,6 +104,17 @@ class Installed(unittest.TestCase):
         run(program, photos, '-o', photos.parent / 'sharp.jpg', env=self.environment)
         self.assertTrue((photos.parent / 'sharp.jpg').read_bytes().startswith(b'\xff\xd8'))
 
+    def test_every_program_has_a_page_that_names_its_options(self):
+        root = pathlib.Path(self.folder.name)
+        for program in (path for folder in root.rglob('bin') for path in folder.iterdir()):
+            with self.subTest(program=program.name):
+                page = next(root.rglob(f'man/man1/{program.name}.1'), None)
+                self.assertIsNotNone(page, 'add it beside the program, and an install_man')
+                named = set(re.findall(r'--[a-z-]*[a-z]', page.read_text().replace('\\-', '-')))
+                told = set(re.findall(r'(?<![\w-])--[a-z-]*[a-z]', run(program, '--help', env=self.environment)))
+                self.assertEqual(told - named, set(), f'options that {page.name} does not name')
+                self.assertEqual(named - told, set(), f'options of {page.name} that are none')
+
     def test_programs_that_name_their_interpreter_can_be_run(self):
         for folder in ('pipelines', 'docs'):
             for path in (SOURCE / folder).rglob('*'):

@@ -6,6 +6,7 @@
 #include "optics/focus_calibration.h"
 #include "optics/focus_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
