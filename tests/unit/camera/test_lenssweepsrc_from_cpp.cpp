@@ -25,8 +25,7 @@ protected:
         gst_util_set_object_arg(G_OBJECT(camera_.get()), "trigger", "free-run");
         g_object_set(camera_.get(), "camera", "Fake_1", "planes", 3U, "rate", 20.0, nullptr);
         g_object_set(sink_.get(), "sync", FALSE, "max-buffers", 4U, "drop", TRUE, nullptr);
-        gst_bin_add_many(GST_BIN(pipeline_.get()), GST_ELEMENT(gst_object_ref(camera_.get())),
-                         GST_ELEMENT(gst_object_ref(sink_.get())), nullptr);
+        gst_bin_add_many(GST_BIN(pipeline_.get()), camera_.get(), sink_.get(), nullptr);
         EXPECT_TRUE(gst_element_link(camera_.get(), sink_.get()));
         play();
     }

@@ -31,7 +31,8 @@ extern "C" cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t 
 }
 
 #if !defined(__SANITIZE_ADDRESS__) /* which has its own, and tells them apart */
-void *operator new(size_t bytes)
+/* Not inlined: g++ 14 would see malloc() given to another's operator delete, and warns. */
+[[gnu::noinline]] void *operator new(size_t bytes)
 {
     host_blocks += bytes >= picture_bytes;
     if (void *block = std::malloc(bytes ? bytes : 1))
@@ -39,12 +40,12 @@ void *operator new(size_t bytes)
     throw std::bad_alloc();
 }
 
-void operator delete(void *block) noexcept
+[[gnu::noinline]] void operator delete(void *block) noexcept
 {
     std::free(block);
 }
 
-void operator delete(void *block, size_t) noexcept
+[[gnu::noinline]] void operator delete(void *block, size_t) noexcept
 {
     std::free(block);
 }
