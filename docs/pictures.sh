@@ -7,7 +7,7 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")}"
 
-gst-launch-1.0 -q lenssweeptestsrc num-buffers=10 planes=10 seed=1 ! video/x-raw,format=I420,width=640,height=480 ! \
+gst-launch-1.0 -q lenssweeptestsrc num-buffers=6 planes=6 seed=1 ! video/x-raw,format=I420,width=640,height=480 ! \
     focalstackmux ! tee name=s  s. ! queue ! dffdepth ! tee name=d  d. ! queue ! c.depth  s. ! queue ! c.stack \
     aifcompose name=c ! queue ! p.sink_0  d. ! queue ! depthcolorize ! p.sink_1 \
     compositor name=p sink_1::xpos=640 ! videoconvert ! jpegenc quality=92 ! filesink location=demo.jpg
