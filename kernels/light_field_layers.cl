@@ -83,9 +83,30 @@ inline int mirrored(__global const float *row, int width, int x, int ground, flo
     return i >= 0 && i < width && fabs(row[i] - row[ground]) <= step ? i : ground;
 }
 
+typedef int16 __attribute__((aligned(4))) int16_any;
+typedef float16 __attribute__((aligned(4))) float16_any;
+
+/* Of 16 pixels from `row` on, none is a step up from its neighbour on the side of -direction. */
+inline bool no_steps(__global const float *row, int direction, float step)
+{
+    return !any(*(__global const float16_any *)row > *(__global const float16_any *)(row - direction) + step);
+}
+
+/* What the grounds `left` and `right` of the pixel x, or one of them, show behind it. */
+inline void put_hidden(__global const uchar4 *color, __global const float *height, __global uchar4 *hidden_color,
+                       __global float *hidden_height, int width, int x, int left, int right, float step)
+{
+    const float from_left = left < 0 ? 0.0f : right < 0 ? 1.0f : (float)(right - x) / (right - left);
+    const int a = left < 0 ? right : left, b = right < 0 ? left : right;
+    const float4 left_color = convert_float4(color[mirrored(height, width, x, a, step)]);
+    const float4 right_color = convert_float4(color[mirrored(height, width, x, b, step)]);
+    hidden_color[x] = convert_uchar4(mix(right_color, left_color, from_left) + 0.5f);
+    hidden_height[x] = mix(height[b], height[a], from_left);
+}
+
 /* The hidden layer: where a pixel stands before lower ones, these continued behind it; elsewhere the seen layer. Between
- * two grounds the lower is taken, and near the middle of equal ones both are mixed. Work-items (rows); grounds: an int a
- * pixel. */
+ * two grounds the lower is taken, and near the middle of equal ones both are mixed. 16 pixels without a step and far from
+ * any are done at once. Work-items (rows); grounds: an int a pixel. */
 __kernel void hide(__global const uchar4 *color, __global const float *height, __global uchar4 *hidden_color,
                    __global float *hidden_height, __global int *grounds, int stride, int2 columns, float step, int reach)
 {
@@ -93,28 +114,39 @@ __kernel void hide(__global const uchar4 *color, __global const float *height, _
     const int width = columns.y - columns.x;
     color += start, height += start, hidden_color += start, hidden_height += start, grounds += start;
     grounds[width - 1] = -1;
-    for (int x = width - 2, ground = -1; x >= 0; x--)
-        grounds[x] = ground = walk(height, x, -1, ground, step, reach);
-
-    for (int x = 0, left = -1; x < width; x++) {
-        left = x > 0 ? walk(height, x, 1, left, step, reach) : -1;
-        int right = grounds[x];
-        if (left >= 0 && right >= 0 && fabs(height[left] - height[right]) > step) {
-            if (height[left] < height[right])
-                right = -1;
-            else
-                left = -1;
-        }
-        if (left < 0 && right < 0) {
-            hidden_color[x] = color[x];
-            hidden_height[x] = height[x];
+    for (int x = width - 2, ground = -1; x >= 0;) {
+        if (ground < 0 && x >= 15 && no_steps(height + x - 15, -1, step)) {
+            *(__global int16_any *)(grounds + x - 15) = -1;
+            x -= 16;
             continue;
         }
-        const float from_left = left < 0 ? 0.0f : right < 0 ? 1.0f : (float)(right - x) / (right - left);
-        const int a = left < 0 ? right : left, b = right < 0 ? left : right;
-        const float4 left_color = convert_float4(color[mirrored(height, width, x, a, step)]);
-        const float4 right_color = convert_float4(color[mirrored(height, width, x, b, step)]);
-        hidden_color[x] = convert_uchar4(mix(right_color, left_color, from_left) + 0.5f);
-        hidden_height[x] = mix(height[b], height[a], from_left);
+        for (const int end = max(x - 16, -1); x > end; x--)
+            grounds[x] = ground = walk(height, x, -1, ground, step, reach);
+    }
+
+    for (int x = 0, left = -1; x < width;) {
+        if (left < 0 && x > 0 && x + 16 <= width && all(*(__global const int16_any *)(grounds + x) < 0) &&
+            no_steps(height + x, 1, step)) {
+            *(__global int16_any *)(hidden_color + x) = *(__global const int16_any *)(color + x);
+            *(__global float16_any *)(hidden_height + x) = *(__global const float16_any *)(height + x);
+            x += 16;
+            continue;
+        }
+        for (const int end = min(x + 16, width); x < end; x++) {
+            left = x > 0 ? walk(height, x, 1, left, step, reach) : -1;
+            int right = grounds[x];
+            if (left >= 0 && right >= 0 && fabs(height[left] - height[right]) > step) {
+                if (height[left] < height[right])
+                    right = -1;
+                else
+                    left = -1;
+            }
+            if (left >= 0 || right >= 0) {
+                put_hidden(color, height, hidden_color, hidden_height, width, x, left, right, step);
+            } else {
+                hidden_color[x] = color[x];
+                hidden_height[x] = height[x];
+            }
+        }
     }
 }

@@ -10,15 +10,20 @@ __kernel void rgbd(__global const uchar *color, ulong color_stride, __global con
     if (x >= 2 * size.x)
         return;
     __global uchar *pixel = output + stride * (ulong)y + (ulong)x * channels;
+    uchar4 value;
     if (x < size.x) {
         __global const uchar *source = color + color_stride * (ulong)y + (ulong)x * channels;
-        for (int c = 0; c < channels; c++)
-            pixel[c] = source[c];
+        value = channels == 4 ? *(__global const uchar4 *)source : (uchar4)(source[0], source[1], source[2], 255);
+    } else {
+        const float u = positions[*(__global const ushort *)(depth + depth_stride * (ulong)y + 2ul * (x - size.x))];
+        const float nearness = isnan(u) ? 0.0f : 1.0f - u;
+        value = (uchar4)((uchar3)convert_uchar_sat_rte(255.0f * (invert ? 1.0f - nearness : nearness)), 255);
+    }
+    if (channels == 4) {
+        *(__global uchar4 *)pixel = value;
         return;
     }
-    const float u = positions[*(__global const ushort *)(depth + depth_stride * (ulong)y + 2ul * (x - size.x))];
-    const float nearness = isnan(u) ? 0.0f : 1.0f - u;
-    const uchar gray = convert_uchar_sat_rte(255.0f * (invert ? 1.0f - nearness : nearness));
-    for (int c = 0; c < channels; c++)
-        pixel[c] = c < 3 ? gray : 255;
+    pixel[0] = value.x;
+    pixel[1] = value.y;
+    pixel[2] = value.z;
 }

@@ -78,18 +78,26 @@ inline float roof_over(const Layers *layers, const Way *way, int u, float q, flo
                roof[(across_at(way, q_end) >> BLOCK_BITS) * way->roof_strides.y]);
 }
 
-/* The colour that the ray sees, 0..255. */
-inline float4 trace(const Layers *layers, float2 origin, float2 slope)
+/* The pixels between which the ray falls through the relief. */
+inline int first_of(const Layers *layers, const Way *way)
+{
+    const float entry = way->start + way->lean * layers->heights.y;
+    return (int)(way->turn ? ceil(entry) : floor(entry)) ^ way->turn;
+}
+
+inline int last_of(const Layers *layers, const Way *way)
+{
+    return first_of(layers, way) + (int)(fabs(way->lean) * (layers->heights.y - layers->heights.x)) + 2;
+}
+
+/* The colour that the ray sees, 0..255; nothing stands in its way before the pixel u. */
+inline float4 trace_from(const Layers *layers, float2 origin, float2 slope, int u_first)
 {
     const Way way = make_way(layers->size, origin, slope);
-    const float least = layers->heights.x, greatest = layers->heights.y, length = fabs(way.lean) * (greatest - least);
-    if (length < 1e-3f)
-        return color_at(layers->color, layers->size, origin + slope * least);
-
-    const float entry = way.start + way.lean * greatest;
-    const int first = (int)(way.turn ? ceil(entry) : floor(entry)) ^ way.turn, last = first + (int)length + 2;
+    const float least = layers->heights.x;
+    const int last = last_of(layers, &way);
     bool behind = false;
-    for (int block = first & -BLOCK; block <= last; block += BLOCK) {
+    for (int block = u_first & -BLOCK; block <= last; block += BLOCK) {
         float q = ((block ^ way.turn) - way.start) / way.lean;
         const float q_end = q - (BLOCK - 1) * way.fall;
         if (q_end > roof_over(layers, &way, block, q, q_end)) {
@@ -118,6 +126,15 @@ inline float4 trace(const Layers *layers, float2 origin, float2 slope)
         }
     }
     return color_at(layers->color, layers->size, origin + slope * least);
+}
+
+/* The colour that the ray sees, 0..255. */
+inline float4 trace(const Layers *layers, float2 origin, float2 slope)
+{
+    const Way way = make_way(layers->size, origin, slope);
+    if (fabs(way.lean) * (layers->heights.y - layers->heights.x) < 1e-3f)
+        return color_at(layers->color, layers->size, origin + slope * layers->heights.x);
+    return trace_from(layers, origin, slope, first_of(layers, &way));
 }
 
 /* Rounds values of 0..255. */

@@ -3,10 +3,10 @@
  *
  * The same as lenticular of light_field_panel.cl, for CPUs: a work-item is a strip of the panel's rows. Each subpixel has a
  * slope of its own; the pixel it sees is sought only between those that two of BINS + 1 slopes around it see, since rays
- * through one point hit the relief in the order of their slopes. 8 of them search in step.
+ * through one point hit the relief in the order of their slopes. 16 of them search in step.
  */
 #include "light_field_row.cl"
-#include "lanes8.cl"
+#include "lanes16.cl"
 
 #define BINS 8 /* from the slope 0 to the greatest, in each direction */
 #define BIN_STEPS 32 /* slopes in the table for each of them */
@@ -36,47 +36,47 @@ inline void find_seen(const Side *side, __global const float *slopes, __global i
     }
 }
 
-/* The channel c of what 8 rays see at the places s, at its bits of a pixel. Steps in the table of slopes are below 0 for rays
+/* The channel c of what 16 rays see at the places s, at its bits of a pixel. Steps in the table of slopes are below 0 for rays
  * that lean to the left and see the row `mirrored`, whose arrays lie as far behind the row's as one's do behind another's. */
-inline uint8 look_at(const Layers *layers, const Side *side, const Side *mirrored, __global const float *slopes, float8 s,
-                     float8 step, int c)
+inline uint16 look_at(const Layers *layers, const Side *side, const Side *mirrored, __global const float *slopes, float16 s,
+                     float16 step, int c)
 {
     const Row *row = &side->row;
     const int pitch = PITCH(row->width);
-    const int8 turned = step < 0.0f;
-    const float8 from_middle = fabs(step), place = turned ? row->width - 1 - s : s;
-    const int8 before = min(convert_int8(from_middle), (int8)(BINS * BIN_STEPS - 1));
-    const float8 less = GATHER(float8, slopes, before), more = GATHER(float8, slopes, (before + 1));
-    const float8 slope = less + (more - less) * (from_middle - convert_float8(before));
+    const int16 turned = step < 0.0f;
+    const float16 from_middle = fabs(step), place = turned ? row->width - 1 - s : s;
+    const int16 before = min(convert_int16(from_middle), (int16)(BINS * BIN_STEPS - 1));
+    const float16 less = GATHER(float16, slopes, before), more = GATHER(float16, slopes, (before + 1));
+    const float16 slope = less + (more - less) * (from_middle - convert_float16(before));
 
-    const int8 bin = (before / BIN_STEPS + (turned ? BINS + 1 : 0)) * pitch + convert_int8(place) + 1;
-    const int8 start = convert_int8(max(GATHER(ushort8, side->seen, bin), GATHER(ushort8, side->seen, (bin + pitch))));
-    const int8 offset = turned ? (int)(mirrored->row.height - row->height) : 0;
-    int8 j = start;
-    float8 height = 0.0f;
-    for (int8 beyond = -1, at = start; any(beyond); at = max(at - 1, (int8)0)) {
-        const float8 here = GATHER(float8, row->height, (offset + at));
+    const int16 bin = (before / BIN_STEPS + (turned ? BINS + 1 : 0)) * pitch + convert_int16(place) + 1;
+    const int16 start = convert_int16(max(GATHER(ushort16, side->seen, bin), GATHER(ushort16, side->seen, (bin + pitch))));
+    const int16 offset = turned ? (int)(mirrored->row.height - row->height) : 0;
+    int16 j = start;
+    float16 height = 0.0f;
+    for (int16 beyond = -1, at = start; any(beyond); at = max(at - 1, (int16)0)) {
+        const float16 here = GATHER(float16, row->height, (offset + at));
         height = beyond ? here : height;
         j = beyond ? at : j;
-        beyond = beyond && at > 0 && convert_float8(at) - slope * here > place;
+        beyond = beyond && at > 0 && convert_float16(at) - slope * here > place;
     }
 
-    const int8 pixel = offset + j;
-    const float8 fall = height - GATHER(float8, row->height, (pixel + 1));
-    const float8 beside = place - (convert_float8(j) - slope * height);
-    const uint8 left = GATHER(uint8, row->color, pixel), right = GATHER(uint8, row->color, (pixel + 1));
-    const float8 from = channel_of(left, 8 * c), to = channel_of(right, 8 * c);
-    float8 value = from + (to - from) * (beside / (1.0f + slope * fall));
-    const int8 torn = fall > layers->step && beside > TOUCH && slope * (layers->heights.y - layers->heights.x) >= 1e-3f;
+    const int16 pixel = offset + j;
+    const float16 fall = height - GATHER(float16, row->height, (pixel + 1));
+    const float16 beside = place - (convert_float16(j) - slope * height);
+    const uint16 left = GATHER(uint16, row->color, pixel), right = GATHER(uint16, row->color, (pixel + 1));
+    const float16 from = channel_of(left, 8 * c), to = channel_of(right, 8 * c);
+    float16 value = from + (to - from) * (beside / (1.0f + slope * fall));
+    const int16 torn = fall > layers->step && beside > TOUCH && slope * (layers->heights.y - layers->heights.x) >= 1e-3f;
     if (any(torn))
-        for (int i = 0; i < 8; i++)
+        for (int i = 0; i < 16; i++)
             if (EACH(int, torn)[i]) {
                 const float4 color = look_behind(EACH(int, turned)[i] ? &mirrored->row : row, EACH(float, place)[i],
                                                  EACH(int, j)[i], EACH(float, slope)[i], layers->step, layers->heights.x,
                                                  layers->fill);
                 EACH(float, value)[i] = c == 0 ? color.x : c == 1 ? color.y : color.z;
             }
-    return convert_uint8(convert_int8(value + 0.5f)) << (8 * c);
+    return convert_uint16(convert_int16(value + 0.5f)) << (8 * c);
 }
 
 /* Arguments as those of lenticular; and slopes of BINS * BIN_STEPS + 1 turns from the middle to the edge of the cone, the
@@ -109,17 +109,17 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
         const float from_bottom = 1.0f - (y + 0.5f) / output_size.y;
         const float start = 1.5f * per_subpixel + tilt * from_bottom * pitch - center;
         __global uchar *line = output + stride * (ulong)y;
-        for (int x = 0; x < output_size.x; x += 8) {
-            const float8 column = min(LANES8 + (float)x, output_size.x - 1.0f);
-            const float8 s = first.x + scale.x * (flips.x ? output_size.x - 1 - column : column) - base;
-            uint8 colors = OPAQUE;
+        for (int x = 0; x < output_size.x; x += 16) {
+            const float16 column = min(LANES16 + (float)x, output_size.x - 1.0f);
+            const float16 s = first.x + scale.x * (flips.x ? output_size.x - 1 - column : column) - base;
+            uint16 colors = OPAQUE;
             for (int k = 0; k < 3; k++) {
-                const float8 lens = start + (3.0f * column + k) * per_subpixel;
-                const float8 fraction = lens - convert_float8(convert_int8(lens));
-                const float8 view = fraction < 0.0f ? fraction + 1.0f : fraction;
+                const float16 lens = start + (3.0f * column + k) * per_subpixel;
+                const float16 fraction = lens - convert_float16(convert_int16(lens));
+                const float16 view = fraction < 0.0f ? fraction + 1.0f : fraction;
                 colors |= look_at(&layers, &side, &mirrored, slopes, s, (view - 0.5f) * steps, channel[k]);
             }
-            put_colors(line, x, min(8, output_size.x - x), channels, colors);
+            put_colors(line, x, min(16, output_size.x - x), channels, colors);
         }
     }
 }

@@ -1,118 +1,158 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The same as elemental of light_field_panel.cl, for CPUs: 8 rays of neighbours walk in step, see trace(), of which only
- * those that come upon the edge of a thing are traced one by one.
+ * The same as elemental of light_field_panel.cl, for CPUs: 16 rays through one lens walk in step, see trace(), from where
+ * something may stand in the way of any of them. Only those that come upon the edge of a thing are traced one by one.
  */
 #include "../light_field_trace.cl"
-#include "lanes8.cl"
+#include "lanes16.cl"
 
 typedef struct {
-    float8 x, y;
+    float16 x, y;
 } Points;
 
 /* See Way. */
 typedef struct {
-    float8 fall, beside, aside, last_across;
-    int8 turn, last_along, stride_along, stride_across, roof_along, roof_across;
+    float16 fall, beside, aside, last_across;
+    int16 turn, last_along, stride_along, stride_across, roof_along, roof_across;
 } Ways;
 
-inline int8 across_of(const Ways *ways, float8 q)
+inline int16 across_of(const Ways *ways, float16 q)
 {
-    return convert_int8(clamp(ways->beside + ways->aside * q + 0.5f, (float8)0.0f, ways->last_across));
+    return convert_int16(clamp(ways->beside + ways->aside * q + 0.5f, (float16)0.0f, ways->last_across));
 }
 
-inline int8 along_of(const Ways *ways, int8 u)
+inline int16 along_of(const Ways *ways, int16 u)
 {
-    return clamp(u ^ ways->turn, (int8)0, ways->last_along);
+    return clamp(u ^ ways->turn, (int16)0, ways->last_along);
 }
 
-inline float8 heights_at(const Layers *layers, const Ways *ways, int8 u, float8 q)
+inline float16 heights_at(const Layers *layers, const Ways *ways, int16 u, float16 q)
 {
-    const int8 pixel = along_of(ways, u) * ways->stride_along + across_of(ways, q) * ways->stride_across;
-    return GATHER(float8, layers->height, pixel);
+    const int16 pixel = along_of(ways, u) * ways->stride_along + across_of(ways, q) * ways->stride_across;
+    return GATHER(float16, layers->height, pixel);
 }
 
 /* See roof_over. */
-inline float8 roofs_over(const Layers *layers, const Ways *ways, int8 u, float8 q, float8 q_end)
+inline float16 roofs_over(const Layers *layers, const Ways *ways, int16 u, float16 q, float16 q_end)
 {
-    const int8 along = (along_of(ways, u) >> BLOCK_BITS) * ways->roof_along;
-    const int8 near = along + (across_of(ways, q) >> BLOCK_BITS) * ways->roof_across;
-    const int8 far = along + (across_of(ways, q_end) >> BLOCK_BITS) * ways->roof_across;
-    return max(GATHER(float8, layers->roof, near), GATHER(float8, layers->roof, far));
+    const int16 along = (along_of(ways, u) >> BLOCK_BITS) * ways->roof_along;
+    const int16 near = along + (across_of(ways, q) >> BLOCK_BITS) * ways->roof_across;
+    const int16 far = along + (across_of(ways, q_end) >> BLOCK_BITS) * ways->roof_across;
+    return max(GATHER(float16, layers->roof, near), GATHER(float16, layers->roof, far));
 }
 
 /* The channel at `shift` bits between four pixels. */
-inline float8 channel_between(uint8 upper_left, uint8 upper_right, uint8 lower_left, uint8 lower_right, float8 right,
-                              float8 down, int shift)
+inline float16 channel_between(uint16 upper_left, uint16 upper_right, uint16 lower_left, uint16 lower_right, float16 right,
+                              float16 down, int shift)
 {
-    const float8 a = channel_of(upper_left, shift), b = channel_of(upper_right, shift);
-    const float8 c = channel_of(lower_left, shift), d = channel_of(lower_right, shift);
-    const float8 upper = a + (b - a) * right, lower = c + (d - c) * right;
+    const float16 a = channel_of(upper_left, shift), b = channel_of(upper_right, shift);
+    const float16 c = channel_of(lower_left, shift), d = channel_of(lower_right, shift);
+    const float16 upper = a + (b - a) * right, lower = c + (d - c) * right;
     return upper + (lower - upper) * down;
 }
 
 /* Rounded colours between pixels. */
-inline uint8 colors_at(__global const uint *picture, int2 size, Points point)
+inline uint16 colors_at(__global const uint *picture, int2 size, Points point)
 {
-    const float8 x = clamp(point.x, 0.0f, size.x - 1.0f), y = clamp(point.y, 0.0f, size.y - 1.0f);
-    const int8 left = convert_int8(x), top = convert_int8(y);
-    const int8 right = min(left + 1, (int8)(size.x - 1)), upper = top * size.x, lower = min(top + 1, (int8)(size.y - 1)) * size.x;
-    const uint8 a = GATHER(uint8, picture, (upper + left)), b = GATHER(uint8, picture, (upper + right));
-    const uint8 c = GATHER(uint8, picture, (lower + left)), d = GATHER(uint8, picture, (lower + right));
-    const float8 across = x - convert_float8(left), down = y - convert_float8(top);
-    uint8 color = OPAQUE;
+    const float16 x = clamp(point.x, 0.0f, size.x - 1.0f), y = clamp(point.y, 0.0f, size.y - 1.0f);
+    const int16 left = convert_int16(x), top = convert_int16(y);
+    const int16 right = min(left + 1, (int16)(size.x - 1)), upper = top * size.x, lower = min(top + 1, (int16)(size.y - 1)) * size.x;
+    const uint16 a = GATHER(uint16, picture, (upper + left)), b = GATHER(uint16, picture, (upper + right));
+    const uint16 c = GATHER(uint16, picture, (lower + left)), d = GATHER(uint16, picture, (lower + right));
+    const float16 across = x - convert_float16(left), down = y - convert_float16(top);
+    uint16 color = OPAQUE;
     for (int shift = 0; shift < 24; shift += 8)
-        color |= convert_uint8(convert_int8(channel_between(a, b, c, d, across, down, shift) + 0.5f)) << shift;
+        color |= convert_uint16(convert_int16(channel_between(a, b, c, d, across, down, shift) + 0.5f)) << shift;
     return color;
 }
 
-/* The colours, with those of the chosen rays traced one by one. */
-inline uint8 trace_chosen(const Layers *layers, Points origin, Points slope, int8 chosen, uint8 colors)
+/* The colours, with those of the chosen rays traced one by one, each from the block that the pixel u is in. */
+inline uint16 trace_chosen(const Layers *layers, Points origin, Points slope, int16 chosen, int16 u, uint16 colors)
 {
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < 16; i++)
         if (EACH(int, chosen)[i]) {
-            const float4 color = trace(layers, (float2)(EACH(float, origin.x)[i], EACH(float, origin.y)[i]),
-                                       (float2)(EACH(float, slope.x)[i], EACH(float, slope.y)[i]));
+            const float4 color = trace_from(layers, (float2)(EACH(float, origin.x)[i], EACH(float, origin.y)[i]),
+                                            (float2)(EACH(float, slope.x)[i], EACH(float, slope.y)[i]), EACH(int, u)[i]);
             EACH(uint, colors)[i] = as_uint(convert_uchar4(color + 0.5f)) | OPAQUE;
         }
     return colors;
 }
 
-/* The rounded colours that 8 rays see. */
-inline uint8 trace_all(const Layers *layers, Points origin, Points slope)
+/* Rays through one lens: they cross the plane of zero parallax in `origin` and lean alike along y. */
+typedef struct {
+    float2 origin;
+    float16 slope_x;
+    float slope_y;
+    float2 ends; /* least and greatest of slope_x */
+} Fan;
+
+/* The greatest height of the squares, of 1 << bits pixels a side, that rays of the fan pass above as they fall from q to
+ * q_end. `roof`: rows of `stride` squares. */
+inline float roof_under(__global const float *roof, int stride, int bits, int2 size, const Fan *fan, float q, float q_end)
+{
+    /* Rays look at the pixel that is nearest across their way. */
+    const float margin = 0.6f;
+    const float4 x = (float4)(fan->ends * q, fan->ends * q_end) + fan->origin.x;
+    const float2 y = (float2)(q, q_end) * fan->slope_y + fan->origin.y;
+    const float2 from = (float2)(min(min(x.s0, x.s1), min(x.s2, x.s3)), min(y.s0, y.s1)) - margin;
+    const float2 to = (float2)(max(max(x.s0, x.s1), max(x.s2, x.s3)), max(y.s0, y.s1)) + margin;
+    const float2 last_pixel = convert_float2(size - 1);
+    const int2 first = convert_int2(clamp(from, 0.0f, last_pixel)) >> bits, last = convert_int2(clamp(to, 0.0f, last_pixel)) >> bits;
+    float greatest = -INFINITY;
+    for (int row = first.y; row <= last.y; row++)
+        for (int column = first.x; column <= last.x; column++)
+            greatest = max(greatest, roof[row * stride + column]);
+    return greatest;
+}
+
+/* The height down to which nothing stands in the fan's way; the least of all if nothing does. */
+inline float free_down_to(const Layers *layers, const Fan *fan)
 {
     const int2 size = layers->size;
-    const float least = layers->heights.x, greatest = layers->heights.y;
+    const float least = layers->heights.x;
+    __global const float *groups = layers->roof + BLOCKS(size.x) * BLOCKS(size.y);
+    const float fall = BLOCK / max(max(max(-fan->ends.x, fan->ends.y), fabs(fan->slope_y)), 1e-3f);
+    float q = min(layers->heights.y,
+                  roof_under(groups, GROUPS(size.x), BLOCK_BITS + GROUP_BITS, size, fan, layers->heights.y, least));
+    while (q > least) {
+        const float q_end = max(q - fall, least);
+        const float roof = roof_under(layers->roof, BLOCKS(size.x), BLOCK_BITS, size, fan, q, q_end);
+        if (roof >= q_end)
+            return min(q, roof);
+        q = q_end;
+    }
+    return least;
+}
+
+/* The rounded colours that 16 rays see. */
+inline uint16 trace_all(const Layers *layers, const Fan *fan)
+{
+    const int2 size = layers->size;
+    const float least = layers->heights.x, greatest = layers->heights.y, from = free_down_to(layers, fan);
+    const Points slope = {fan->slope_x, fan->slope_y};
     const int blocks = BLOCKS(size.x);
-    const int8 along_x = fabs(slope.x) >= fabs(slope.y);
-    const float8 start = along_x ? origin.x : origin.y, lean_any = along_x ? slope.x : slope.y;
-    const int8 upright = fabs(lean_any) * (greatest - least) < 1e-3f;
-    const float8 lean = upright ? 1.0f : lean_any;
-    const Ways ways = {1.0f / fabs(lean), along_x ? origin.y : origin.x, along_x ? slope.y : slope.x,
-                       convert_float8(along_x ? size.y - 1 : size.x - 1), lean > 0.0f, along_x ? size.x - 1 : size.y - 1,
+    const int16 along_x = fabs(slope.x) >= fabs(slope.y);
+    const float16 start = along_x ? fan->origin.x : fan->origin.y, lean_any = along_x ? slope.x : slope.y;
+    const int16 upright = fabs(lean_any) * (greatest - least) < 1e-3f;
+    const float16 lean = upright ? 1.0f : lean_any;
+    const Ways ways = {1.0f / fabs(lean), along_x ? fan->origin.y : fan->origin.x, along_x ? slope.y : slope.x,
+                       convert_float16(along_x ? size.y - 1 : size.x - 1), lean > 0.0f, along_x ? size.x - 1 : size.y - 1,
                        along_x ? 1 : size.x, along_x ? size.x : 1, along_x ? 1 : blocks, along_x ? blocks : 1};
 
-    const float8 entry = start + lean * greatest;
-    const int8 entered = convert_int8(ways.turn ? ceil(entry) : floor(entry)) ^ ways.turn;
-    const int8 first = entered & -BLOCK, last = entered + convert_int8(fabs(lean) * (greatest - least)) + 2;
-    const float8 q_first = (convert_float8(first ^ ways.turn) - start) / lean;
-    int8 u = first, hit = 0;
-    float8 height = 0.0f;
+    const float16 entry = start + lean * from;
+    const int16 first = convert_int16(ways.turn ? ceil(entry) : floor(entry)) ^ ways.turn;
+    const int16 last = first + convert_int16(fabs(lean) * (from - least)) + 2;
+    const float16 q_first = (convert_float16(first ^ ways.turn) - start) / lean;
+    int16 u = first, hit = 0;
+    float16 height = 0.0f;
     /* Where rays are next does not depend on what was read, so that the reads of several steps overlap. */
-    for (int8 walking = !upright; any(walking);) {
-        int8 block = u;
-        for (int8 flying = walking; any(flying); u += BLOCK) {
-            const float8 q = q_first - convert_float8(u - first) * ways.fall, q_end = q - (BLOCK - 1) * ways.fall;
-            flying = flying && u <= last && q_end > roofs_over(layers, &ways, u, q, q_end);
-            block = flying ? u + BLOCK : block;
-        }
-        u = block;
-        int8 inside = walking && u <= last, steps = BLOCK;
+    for (int16 walking = !upright; any(walking);) {
+        int16 inside = walking && u <= last, steps = BLOCK;
         for (int step = 0; step < BLOCK && any(inside); step++) {
-            const float8 q = q_first - convert_float8(u + step - first) * ways.fall;
-            const float8 here = heights_at(layers, &ways, u + step, q);
-            const int8 under = inside && q <= here;
+            const float16 q = q_first - convert_float16(u + step - first) * ways.fall;
+            const float16 here = heights_at(layers, &ways, u + step, q);
+            const int16 under = inside && q <= here;
             steps = under ? step : steps;
             height = under ? here : height;
             inside = inside && !under;
@@ -120,16 +160,28 @@ inline uint8 trace_all(const Layers *layers, Points origin, Points slope)
         u = walking ? u + steps : u;
         hit = hit || (walking && steps < BLOCK);
         walking = walking && !hit && u <= last;
+        if (!any(walking))
+            break;
+        /* What passes an edge flies on over blocks, from the one that it is in. */
+        u = walking ? max(u & -BLOCK, first) : u;
+        int16 block = u;
+        for (int16 flying = walking; any(flying); u = (u & -BLOCK) + BLOCK) {
+            const float16 q = q_first - convert_float16(u - first) * ways.fall, q_end = q - (BLOCK - 1) * ways.fall;
+            flying = flying && u <= last && q_end > roofs_over(layers, &ways, u, q, q_end);
+            block = flying ? (u & -BLOCK) + BLOCK : block;
+        }
+        u = block;
     }
 
-    const float8 q = q_first - convert_float8(u - first) * ways.fall;
-    const float8 below = heights_at(layers, &ways, u - 1, q + ways.fall);
-    const float8 above = q + ways.fall - below, under = height - q;
-    const float8 crossing = hit ? q + ways.fall * under / (above + under) : least;
+    const float16 q = q_first - convert_float16(u - first) * ways.fall;
+    const float16 below = heights_at(layers, &ways, u - 1, q + ways.fall);
+    const float16 above = q + ways.fall - below, under = height - q;
+    const float16 crossing = hit ? q + ways.fall * under / (above + under) : least;
+    const Points origin = {fan->origin.x, fan->origin.y};
     const Points place = {origin.x + slope.x * crossing, origin.y + slope.y * crossing};
-    const uint8 colors = colors_at((__global const uint *)layers->color, size, place);
-    const int8 torn = hit && height - below > layers->step && under * fabs(lean) > TOUCH;
-    return any(torn) ? trace_chosen(layers, origin, slope, torn, colors) : colors;
+    const uint16 colors = colors_at((__global const uint *)layers->color, size, place);
+    const int16 torn = hit && height - below > layers->step && under * fabs(lean) > TOUCH;
+    return any(torn) ? trace_chosen(layers, origin, slope, torn, u, colors) : colors;
 }
 
 /* See hexagonal_lens of light_field_panel.cl. */
@@ -137,18 +189,34 @@ inline Points hexagonal_lenses(Points p)
 {
     const float row_height = 0.8660254f; /* sqrt(3) / 2 */
     Points nearest = {0.0f, 0.0f};
-    float8 least = INFINITY;
+    float16 least = INFINITY;
     for (int k = 0; k < 2; k++) {
-        const float8 row = floor(p.y / row_height) + k;
-        const float8 shift = 0.5f * (row - 2.0f * floor(0.5f * row));
+        const float16 row = floor(p.y / row_height) + k;
+        const float16 shift = 0.5f * (row - 2.0f * floor(0.5f * row));
         const Points lens = {rint(p.x - shift) + shift, row * row_height};
-        const float8 distance = (p.x - lens.x) * (p.x - lens.x) + (p.y - lens.y) * (p.y - lens.y);
-        const int8 nearer = distance < least;
+        const float16 distance = (p.x - lens.x) * (p.x - lens.x) + (p.y - lens.y) * (p.y - lens.y);
+        const int16 nearer = distance < least;
         least = nearer ? distance : least;
         nearest.x = nearer ? lens.x : nearest.x;
         nearest.y = nearer ? lens.y : nearest.y;
     }
     return nearest;
+}
+
+#define SECTION 256 /* pixels of a row whose lenses are found at once */
+
+/* The middles of the lenses over a row's pixels from x on, pixels from the panel's `center`. */
+inline void find_lenses(int x, float py, float2 center, float4 to_lens, float4 to_panel, int hexagonal, float *middle_x,
+                        float *middle_y)
+{
+    for (int i = 0; i < SECTION; i += 16) {
+        const float16 px = LANES16 + (x + i + 0.5f - center.x);
+        const Points place = {to_lens.x * px + to_lens.y * py, to_lens.z * px + to_lens.w * py};
+        const Points square = {rint(place.x), rint(place.y)};
+        const Points lens = hexagonal ? hexagonal_lenses(place) : square;
+        *(float16 *)(middle_x + i) = to_panel.x * lens.x + to_panel.y * lens.y;
+        *(float16 *)(middle_y + i) = to_panel.z * lens.x + to_panel.w * lens.y;
+    }
 }
 
 /* Arguments as those of elemental. Work-items (strips of rows). */
@@ -158,18 +226,26 @@ __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_pa
     const Layers layers = MAKE_LAYERS;
     const int strip = (int)get_global_id(0), strips = (int)get_global_size(0);
     const float to_slope = (flip ? -1.0f : 1.0f) / gap, aspect = scale.y / scale.x;
-    for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
-        __global uchar *line = output + stride * (ulong)y;
-        for (int x = 0; x < output_size.x; x += 8) {
-            const float8 px = LANES8 + (x + 0.5f - center.x);
+    float middle_x[SECTION] __attribute__((aligned(64))), middle_y[SECTION] __attribute__((aligned(64)));
+    /* Neighbours in a section look at the same part of the relief, row after row. */
+    for (int section = 0; section < output_size.x; section += SECTION) {
+        const int width = min(SECTION, output_size.x - section);
+        for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
+            __global uchar *line = output + stride * (ulong)y;
             const float py = y + 0.5f - center.y;
-            const Points place = {to_lens.x * px + to_lens.y * py, to_lens.z * px + to_lens.w * py};
-            const Points square = {rint(place.x), rint(place.y)};
-            const Points lens = hexagonal ? hexagonal_lenses(place) : square;
-            const Points c = {to_panel.x * lens.x + to_panel.y * lens.y, to_panel.z * lens.x + to_panel.w * lens.y};
-            const Points slope = {(c.x - px) * to_slope, (c.y - py) * (to_slope * aspect)};
-            const Points origin = {first.x + scale.x * (c.x + center.x - 0.5f), first.y + scale.y * (c.y + center.y - 0.5f)};
-            put_colors(line, x, min(8, output_size.x - x), channels, trace_all(&layers, origin, slope));
+            find_lenses(section, py, center, to_lens, to_panel, hexagonal, middle_x, middle_y);
+            for (int i = 0, end = 0; i < width; i = end) {
+                const float2 middle = (float2)(middle_x[i], middle_y[i]);
+                for (end = i + 1; end < min(i + 16, width) && middle_x[end] == middle.x && middle_y[end] == middle.y;)
+                    end++;
+                /* Lanes behind the lens look where its last pixel does; what they paint is painted over. */
+                const float16 px = min(LANES16 + (float)i, (float)(end - 1)) + (section + 0.5f - center.x);
+                Fan fan = {first + scale * (middle + center - 0.5f), (middle.x - px) * to_slope,
+                           (middle.y - py) * (to_slope * aspect)};
+                fan.ends = (float2)(min(fan.slope_x.s0, fan.slope_x.sf), max(fan.slope_x.s0, fan.slope_x.sf));
+                const int x = section + i;
+                put_colors(line, x, min(16, output_size.x - x), channels, trace_all(&layers, &fan));
+            }
         }
     }
 }

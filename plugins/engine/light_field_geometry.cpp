@@ -37,6 +37,22 @@ double aspect_of(const LightFieldParameters &parameters, glm::dvec2 picture, glm
     return parameters.view_aspect > 0.0 ? parameters.view_aspect : picture.x / picture.y;
 }
 
+/* How many samples along x and y an eye can tell apart. A lens shows it one colour: two samples a lens are
+ * what that can carry, and finer ones only alias (Zwicker et al. 2006, "Antialiasing for automultiscopic 3D
+ * displays"). */
+glm::dvec2 resolution(const LightFieldParameters &parameters, glm::dvec2 view)
+{
+    constexpr double samples = 2.0; /* of a lens */
+    switch (parameters.layout) {
+    case LightFieldLayout::Lenticular:
+        return glm::min(view, {samples * parameters.sheet.pitch, view.y});
+    case LightFieldLayout::Elemental:
+        return glm::min(view, samples * view / parameters.lenses.pitch);
+    default:
+        return view;
+    }
+}
+
 double greatest_slope(const LightFieldParameters &parameters)
 {
     if (parameters.layout != LightFieldLayout::Elemental)
@@ -53,7 +69,7 @@ LightFieldGeometry::LightFieldGeometry(const LightFieldParameters &parameters, P
 {
     const glm::dvec2 whole(picture.width, picture.height);
     const glm::dvec2 seen = crop(whole, aspect_of(parameters, whole, view));
-    const glm::dvec2 shrink = glm::min(glm::dvec2(1.0), glm::dvec2(view) / seen);
+    const glm::dvec2 shrink = glm::min(glm::dvec2(1.0), resolution(parameters, view) / seen);
     layers = glm::max(glm::ivec2(glm::round(whole * shrink)), glm::ivec2(1));
 
     const glm::dvec2 seen_layers = seen * glm::dvec2(layers) / whole;

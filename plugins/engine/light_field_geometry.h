@@ -11,7 +11,8 @@
 namespace dff {
 
 /* Where the layers of the relief lie under the views, and where rays start. Lengths are pixels of the layers,
- * which are those of the picture or fewer; x right, y down, the middle of the first pixel at 0. */
+ * which are those of the picture, or fewer where the display shows no more; x right, y down, the middle of
+ * the first pixel at 0. */
 struct LightFieldGeometry {
     LightFieldGeometry(const LightFieldParameters &parameters, PictureSize picture, PictureSize output);
 

@@ -11,8 +11,9 @@ namespace dff {
 
 namespace {
 
-constexpr size_t strips = 64;     /* of light_field_shrink.cl */
-constexpr size_t read_behind = 3; /* pixels, by light_field_row.cl */
+constexpr size_t strips = 64;                   /* of light_field_shrink.cl */
+constexpr size_t read_behind = 3;               /* pixels, by light_field_row.cl and light_field_rays.cl */
+constexpr size_t block = 16, group = 4 * block; /* pixels a side, of light_field_roof.cl */
 
 float step_of(const LightFieldGeometry &geometry)
 {
@@ -34,12 +35,10 @@ cl_int2 columns_of(const LightFieldGeometry &geometry)
              std::clamp(first + count + beside, 1, geometry.layers.x)}};
 }
 
-/* Columns and rows of light_field_roof.cl. */
-std::pair<size_t, size_t> roof_size(glm::ivec2 size)
+/* Columns and rows of squares with this side. */
+std::pair<size_t, size_t> squares(glm::ivec2 size, size_t side)
 {
-    constexpr size_t block = 16;
-    return {(static_cast<size_t>(size.x) + block - 1) / block,
-            (static_cast<size_t>(size.y) + block - 1) / block};
+    return {(static_cast<size_t>(size.x) + side - 1) / side, (static_cast<size_t>(size.y) + side - 1) / side};
 }
 
 } // namespace
@@ -68,12 +67,15 @@ LightFieldLayers::LightFieldLayers(CommandQueue &queue, glm::ivec2 size, Picture
     height_of_depth_ = program.kernel("height_of_depth");
     fill_unknown_ = program.kernel("fill_unknown");
     hide_ = program.kernel("hide");
-    raise_roof_ = Program(queue.device(), "light_field_roof").kernel("raise_roof");
+    const Program roof(queue.device(), "light_field_roof");
+    raise_roof_ = roof.kernel("raise_roof");
+    join_roof_ = roof.kernel("join_roof");
     const size_t pixels = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
     for (cl::Buffer *buffer : {&color_, &height_, &hidden_color_, &hidden_height_, &grounds_})
         *buffer = queue.allocate(4 * (pixels + read_behind));
-    const auto [roof_columns, roof_rows] = roof_size(size);
-    roof_ = queue.allocate(roof_columns * roof_rows * sizeof(cl_float));
+    const auto [blocks, block_rows] = squares(size, block);
+    const auto [groups, group_rows] = squares(size, group);
+    roof_ = queue.allocate((blocks * block_rows + groups * group_rows) * sizeof(cl_float));
 }
 
 void LightFieldLayers::shrink_color(const ColorAndDepth &pictures, cl_int2 columns)
@@ -110,9 +112,11 @@ void LightFieldLayers::run(const ColorAndDepth &pictures, const cl::Buffer &posi
 
 void LightFieldLayers::raise_roof(const LightFieldGeometry &geometry)
 {
-    const auto [columns, rows] = roof_size(size_);
+    const auto [blocks, block_rows] = squares(size_, block);
+    const auto [groups, group_rows] = squares(size_, group);
     queue_.begin_stage("roof");
-    queue_.run(raise_roof_, {columns, rows}, height_, to_int2(size_), columns_of(geometry), roof_);
+    queue_.run(raise_roof_, {blocks, block_rows}, height_, to_int2(size_), columns_of(geometry), roof_);
+    queue_.run(join_roof_, {groups, group_rows}, to_int2(size_), roof_);
 }
 
 cl_uint LightFieldLayers::set_arguments(cl::Kernel &kernel, const LightFieldGeometry &geometry,

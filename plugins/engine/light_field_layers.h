@@ -42,7 +42,7 @@ private:
     bool in_rows_;
     cl_int sums_size_;
     cl::Buffer sums_; /* of shrinking in rows */
-    cl::Kernel shrink_color_, height_of_depth_, fill_unknown_, hide_, raise_roof_;
+    cl::Kernel shrink_color_, height_of_depth_, fill_unknown_, hide_, raise_roof_, join_roof_;
     cl::Buffer color_, height_, hidden_color_, hidden_height_, grounds_, roof_;
 };
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 
-/* light-field-bench [ROUNDS]: what a picture of 1920x1080 and its depth map cost as each layout, beside a
- * memory copy of what comes out. Everything runs in turn in one process; processor times hold on a machine
- * that is not quiet. */
+/* light-field-bench [ROUNDS [LAYOUT]]: what a picture of 1920x1080 and its depth map cost as each layout,
+ * beside a memory copy of what comes out. Everything runs in turn in one process; processor times hold on a
+ * machine that is not quiet. */
 #include "engine/light_field_renderer.h"
 #include "engine/scene/scene_files.h"
 #include "engine/scene/scene_shapes.h"
@@ -16,6 +16,7 @@
 #include <cstring>
 #include <functional>
 #include <opencv2/imgproc.hpp>
+#include <string_view>
 #include <sys/resource.h>
 
 using namespace dff;
@@ -124,5 +125,6 @@ int main(int count, char **arguments)
     std::printf(
         "| layout | processor ms | ms | frames/s | of a copy | stages, ms |\n|---|---|---|---|---|---|\n");
     for (const Case &c : cases())
-        measure(c, color, depth, rounds);
+        if (count <= 2 || std::string_view(c.name).starts_with(arguments[2]))
+            measure(c, color, depth, rounds);
 }

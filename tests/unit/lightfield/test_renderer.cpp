@@ -80,7 +80,7 @@ double share_that_differs(const Picture &picture, PictureSize output, const Ligh
 {
     const std::vector<uint8_t> found = render(picture, output, parameters, style);
     const LightFieldGeometry geometry(parameters, picture.size, output);
-    const TwinLayers twin(geometry, picture.colors(), picture.positions());
+    const TwinLayers twin(geometry, picture.size, picture.colors(), picture.positions());
     size_t different = 0;
     for (uint32_t y = 0; y < output.height; y++)
         for (uint32_t x = 0; x < output.width; x++)

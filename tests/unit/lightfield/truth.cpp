@@ -48,20 +48,29 @@ cv::Mat1w depth_map(const Scene &scene)
     return map;
 }
 
+cv::Mat3b render(const cv::Mat3b &color, const cv::Mat1w &depth, const LightFieldParameters &parameters,
+                 cv::Size output)
+{
+    const auto size_of = [](cv::Size size) {
+        return PictureSize{static_cast<uint32_t>(size.width), static_cast<uint32_t>(size.height)};
+    };
+    const LightFieldShape shape{PixelFormat::Rgb, size_of(color.size()), size_of(output)};
+    LightFieldRenderer renderer(Device::open(""), shape, parameters);
+    cv::Mat3b picture(output);
+    const auto bytes = [](const cv::Mat &mat) {
+        return std::as_writable_bytes(std::span(mat.data, mat.total() * mat.elemSize()));
+    };
+    renderer.render({bytes(color), color.step}, {bytes(depth), depth.step}, bytes(picture), picture.step);
+    return picture;
+}
+
 std::vector<cv::Mat3b> render_views(const cv::Mat3b &color, const cv::Mat1w &depth,
                                     const LightFieldParameters &parameters)
 {
-    const PictureSize size{static_cast<uint32_t>(color.cols), static_cast<uint32_t>(color.rows)};
-    const LightFieldShape shape{PixelFormat::Rgb, size, {size.width * parameters.columns, size.height}};
-    LightFieldRenderer renderer(Device::open(""), shape, parameters);
-    cv::Mat3b row(color.rows, color.cols * static_cast<int>(parameters.columns));
-    const auto bytes = [](const cv::Mat &picture) {
-        return std::as_writable_bytes(std::span(picture.data, picture.total() * picture.elemSize()));
-    };
-    renderer.render({bytes(color), color.step}, {bytes(depth), depth.step}, bytes(row), row.step);
-
+    const int columns = static_cast<int>(parameters.columns);
+    const cv::Mat3b row = render(color, depth, parameters, {columns * color.cols, color.rows});
     std::vector<cv::Mat3b> views;
-    for (int view = 0; view < static_cast<int>(parameters.columns); view++)
+    for (int view = 0; view < columns; view++)
         views.push_back(row(cv::Rect(view * color.cols, 0, color.cols, color.rows)).clone());
     return views;
 }

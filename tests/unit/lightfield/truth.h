@@ -25,6 +25,10 @@ struct Truth {
 /* 16-bit depth map of unit=index. */
 cv::Mat1w depth_map(const Scene &scene);
 
+/* What the renderer makes of a picture (R, G, B) and its depth map. */
+cv::Mat3b render(const cv::Mat3b &color, const cv::Mat1w &depth, const LightFieldParameters &parameters,
+                 cv::Size output);
+
 /* The views that the renderer makes of a picture (R, G, B) and its depth map. */
 std::vector<cv::Mat3b> render_views(const cv::Mat3b &color, const cv::Mat1w &depth,
                                     const LightFieldParameters &parameters);

@@ -11,17 +11,45 @@
 
 namespace dff {
 
-TwinLayers::TwinLayers(const LightFieldGeometry &geometry, std::vector<glm::dvec3> color,
-                       const std::vector<float> &positions)
+namespace {
+
+/* The rounded mean of the picture over a pixel of layers of this size. */
+glm::dvec3 mean_over(const std::vector<glm::dvec3> &color, glm::ivec2 picture, glm::ivec2 size,
+                     glm::ivec2 pixel)
+{
+    const glm::dvec2 scale = glm::dvec2(picture) / glm::dvec2(size);
+    const glm::dvec2 begin = glm::dvec2(pixel) * scale, end = begin + scale;
+    const auto covered = [](double from, double to, int i) {
+        return std::min(to, i + 1.0) - std::max(from, i + 0.0);
+    };
+    glm::dvec3 sum(0.0);
+    for (int y = static_cast<int>(begin.y); y < std::min<double>(end.y, picture.y); y++)
+        for (int x = static_cast<int>(begin.x); x < std::min<double>(end.x, picture.x); x++)
+            sum += covered(begin.x, end.x, x) * covered(begin.y, end.y, y) *
+                   color[static_cast<size_t>(y * picture.x + x)];
+    return glm::round(sum / (scale.x * scale.y));
+}
+
+} // namespace
+
+TwinLayers::TwinLayers(const LightFieldGeometry &geometry, PictureSize picture,
+                       const std::vector<glm::dvec3> &color, const std::vector<float> &positions)
     : size_(geometry.layers), lowest_(geometry.lowest), range_(geometry.range),
       step_(LightFieldLayers::edge_step * geometry.range),
-      reach_(static_cast<int>(std::ceil(geometry.reach * geometry.range)) + 1), color_(std::move(color)),
-      hidden_color_(color_)
+      reach_(static_cast<int>(std::ceil(geometry.reach * geometry.range)) + 1)
 {
-    for (const float position : positions)
-        height_.push_back(lowest_ + range_ * (1.0 - position));
+    const glm::ivec2 whole(picture.width, picture.height);
+    for (int y = 0; y < size_.y; y++)
+        for (int x = 0; x < size_.x; x++) {
+            const glm::ivec2 middle = glm::min(
+                glm::ivec2((glm::dvec2(x, y) + 0.5) * glm::dvec2(whole) / glm::dvec2(size_)), whole - 1);
+            color_.push_back(mean_over(color, whole, size_, {x, y}));
+            height_.push_back(lowest_ +
+                              range_ * (1.0 - positions[static_cast<size_t>(middle.y * whole.x + middle.x)]));
+        }
     for (int y = 0; y < size_.y; y++)
         fill_unknown(y);
+    hidden_color_ = color_;
     hidden_height_ = height_;
     for (int y = 0; y < size_.y; y++)
         hide(y);

@@ -10,11 +10,11 @@
 
 namespace dff {
 
-/* The plain C++ twin of light_field_layers.cl and light_field_trace.cl, for pictures that the layers are not
- * smaller than: colours R, G, B, positions in the sweep (NAN: unknown). */
+/* The plain C++ twin of light_field_layers.cl and light_field_trace.cl, of a picture's colours (R, G, B) and
+ * positions in the sweep (NAN: unknown). */
 class TwinLayers {
 public:
-    TwinLayers(const LightFieldGeometry &geometry, std::vector<glm::dvec3> color,
+    TwinLayers(const LightFieldGeometry &geometry, PictureSize picture, const std::vector<glm::dvec3> &color,
                const std::vector<float> &positions);
 
     glm::dvec3 trace(glm::dvec2 origin, glm::dvec2 slope, bool fill) const;
