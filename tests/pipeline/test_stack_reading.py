@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, in which order, and what it refuses."""
+import os
 import pathlib
 import shutil
 import struct
@@ -317,6 +318,10 @@ class Refusing(Sweeps):
             with self.subTest(ending):
                 self.assert_refused(path.name)
             path.unlink()
+
+    def test_a_pipe_that_nobody_writes_into(self):
+        os.mkfifo(self.photos / '5.jpg')
+        self.assert_refused('5.jpg cannot be read: it is not a file')
 
     def test_sizes(self):
         write(self.photos / '2.png', flat(0, 100, SIDE))

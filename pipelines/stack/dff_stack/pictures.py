@@ -88,6 +88,8 @@ def focus_distance(spec):
 
 
 def open_file(path):
+    if path.exists() and not path.is_file():  # a pipe is opened only when somebody writes into it
+        raise Unusable(f'{path} cannot be read: it is not a file')
     settings = oiio.ImageSpec()
     settings['oiio:UnassociatedAlpha'] = 1  # colours must not fade to black where they are transparent
     settings['raw:ColorSpace'] = 'sRGB'
