@@ -5,7 +5,8 @@
 # distribution.sh SUITE [COMMAND...]: tries the last commit on another Debian, as a newcomer would: makes a root of SUITE
 # (bookworm, trixie, ...) by debootstrap, clones this checkout into it, and runs pipelines/demo.sh and tests/run.sh there, or
 # COMMAND instead. Needs root and the package debootstrap. The root stays for the next time, with what was installed in it,
-# in $DFF_ROOTS (/var/tmp/dff-roots), and takes 8 GB; remove it for a fresh one. A compiler cache of this machine is used.
+# in $DFF_ROOTS (/var/tmp/dff-roots), and takes 8 GB; remove it for a fresh one. Of this machine a compiler cache, the certificates
+# that it trusts and pip's settings are used.
 set -euo pipefail
 [ $# -gt 0 ] || { sed -n '5,8s/^# //p' "$0" >&2; exit 2; }
 suite=$1
@@ -43,6 +44,9 @@ exec unshare --mount --fork --pid --kill-child sh -c '
     mount --rbind /sys "$root/sys"
     for folder in .cache/ccache .config/ccache; do
         [ ! -d "$home/$folder" ] || mount --bind "$home/$folder" "$root/root/$folder"
+    done
+    for file in /etc/ssl/certs/ca-certificates.crt /etc/pip.conf; do
+        [ ! -f "$file" ] || { touch "$root$file" && mount --bind -o ro "$file" "$root$file"; }
     done
     exec chroot "$root" env -i HOME=/root TERM=dumb LC_ALL=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         sh -c "cd /root/gst-plugins-dff && exec \"\$@\"" sh "$@"' sh "$root" "$HOME" "$@"
