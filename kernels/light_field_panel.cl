@@ -5,10 +5,11 @@
  */
 #include "light_field_trace.cl"
 
-/* A sheet of slanted cylindrical lenses. With x, y in 0..1 from the panel's bottom left, the subpixel k (0, 1, 2 from the
- * left) belongs to the view v = fract((x + k / (3 width) + tilt y) pitch - center), of the slope tan((v - 1/2) cone).
- * subpixels: k of the first three bytes of a pixel. flips: 1 where the picture is mirrored along x, along y, v to 1 - v. */
-__kernel void lenticular(LAYERS, float pitch, float tilt, float center, float cone, int4 subpixels, int4 flips,
+/* A sheet of slanted cylindrical lenses. With x, y in 0..1 from the panel's bottom left, a byte of a pixel belongs to the
+ * view v = fract((x + shift + tilt y) pitch - center), of the slope tan((v - 1/2) cone). shifts: of the first three bytes of
+ * two pixels of a row, and so on for four rows from the bottom up. flips: 1 where the picture is mirrored along x, along y, v
+ * to 1 - v. */
+__kernel void lenticular(LAYERS, float pitch, float tilt, float center, float cone, __global const float *shifts, int4 flips,
                          float2 first, float2 scale, __global uchar *output, ulong stride, int channels, int2 output_size)
 {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -18,10 +19,10 @@ __kernel void lenticular(LAYERS, float pitch, float tilt, float center, float co
     const int2 pixel = (int2)(flips.x ? output_size.x - 1 - x : x, flips.y ? output_size.y - 1 - y : y);
     const float2 origin = first + scale * convert_float2(pixel);
     const float from_left = (x + 0.5f) / output_size.x, from_bottom = 1.0f - (y + 0.5f) / output_size.y;
-    const int k[3] = {subpixels.x, subpixels.y, subpixels.z};
+    __global const float *shift = shifts + 6 * (output_size.y - 1 - y & 3) + 3 * (x & 1);
     float value[3];
     for (int c = 0; c < 3; c++) {
-        const float place = (from_left + k[c] / (3.0f * output_size.x) + tilt * from_bottom) * pitch - center;
+        const float place = (from_left + shift[c] + tilt * from_bottom) * pitch - center;
         float view = place - floor(place);
         view = flips.z ? 1.0f - view : view;
         const float4 seen = trace(&layers, origin, (float2)(tan((view - 0.5f) * cone), 0.0f));

@@ -9,6 +9,7 @@
 #include "lanes16.cl"
 
 #define BINS 8 /* from the slope 0 to the greatest, in each direction */
+#define ODD_LANES (int16)(0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1)
 #define BIN_STEPS 32 /* slopes in the table for each of them */
 
 /* The relief's row from one side. */
@@ -81,8 +82,8 @@ inline uint16 look_at(const Layers *layers, const Side *side, const Side *mirror
 
 /* Arguments as those of lenticular; and slopes of BINS * BIN_STEPS + 1 turns from the middle to the edge of the cone, the
  * row's first column and width, and scratch_size elements of scratch for each work-item. Work-items (strips). */
-__kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __global const float *slopes, int4 subpixels,
-                              int4 flips, int base, int width, __global uint *scratch, int scratch_size, float2 first,
+__kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __global const float *slopes,
+                              __global const float *shifts, int4 flips, int base, int width, __global uint *scratch, int scratch_size, float2 first,
                               float2 scale, __global uchar *output, ulong stride, int channels, int2 output_size)
 {
     const Layers layers = MAKE_LAYERS;
@@ -92,8 +93,7 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
     __global int *behind = (__global int *)scratch;
     __global ushort *seen = (__global ushort *)(scratch + PITCH(width));
     const Side side = {row, seen}, mirrored = {mirrored_row, seen + (BINS + 1) * PITCH(width)};
-    const int channel[3] = {subpixels.x, subpixels.y, subpixels.z};
-    const float per_subpixel = pitch / (3.0f * output_size.x);
+    const float per_pixel = pitch / output_size.x;
     const float steps = (flips.z ? -2.0f : 2.0f) * (BINS * BIN_STEPS); /* in the table of slopes, from view to view */
     int loaded = -1;
     for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
@@ -107,17 +107,18 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
         }
         load_colors(&layers, point_y, base, &row, &mirrored_row);
         const float from_bottom = 1.0f - (y + 0.5f) / output_size.y;
-        const float start = 1.5f * per_subpixel + tilt * from_bottom * pitch - center;
+        const float start = 0.5f * per_pixel + tilt * from_bottom * pitch - center;
+        __global const float *shift = shifts + 6 * (output_size.y - 1 - y & 3);
         __global uchar *line = output + stride * (ulong)y;
         for (int x = 0; x < output_size.x; x += 16) {
             const float16 column = min(LANES16 + (float)x, output_size.x - 1.0f);
             const float16 s = first.x + scale.x * (flips.x ? output_size.x - 1 - column : column) - base;
             uint16 colors = OPAQUE;
-            for (int k = 0; k < 3; k++) {
-                const float16 lens = start + (3.0f * column + k) * per_subpixel;
+            for (int c = 0; c < 3; c++) {
+                const float16 lens = start + column * per_pixel + (ODD_LANES ? (float16)shift[3 + c] : (float16)shift[c]) * pitch;
                 const float16 fraction = lens - convert_float16(convert_int16(lens));
                 const float16 view = fraction < 0.0f ? fraction + 1.0f : fraction;
-                colors |= look_at(&layers, &side, &mirrored, slopes, s, (view - 0.5f) * steps, channel[k]);
+                colors |= look_at(&layers, &side, &mirrored, slopes, s, (view - 0.5f) * steps, c);
             }
             put_colors(line, x, min(16, output_size.x - x), channels, colors);
         }

@@ -16,9 +16,8 @@ glm::ivec2 view_size(const LightFieldParameters &parameters, glm::ivec2 output)
 {
     switch (parameters.layout) {
     case LightFieldLayout::Quilt:
-        return output / glm::ivec2(parameters.columns, parameters.rows);
     case LightFieldLayout::Views:
-        return {output.x / static_cast<int>(parameters.columns), output.y};
+        return output / glm::ivec2(parameters.columns, parameters.rows);
     default:
         return output;
     }
@@ -92,6 +91,35 @@ LightFieldGeometry::Columns LightFieldGeometry::columns() const
 double view_slope(unsigned view, unsigned views, double cone)
 {
     return views > 1 ? std::tan(cone * (static_cast<double>(view) / (views - 1) - 0.5)) : 0.0;
+}
+
+namespace {
+
+int cell_of(CellPattern pattern, glm::ivec2 pixel)
+{
+    switch (pattern) {
+    case CellPattern::Checkerboard:
+        return (pixel.x + pixel.y) % 2;
+    case CellPattern::Rows:
+        return pixel.y % 4;
+    case CellPattern::ShiftedRows:
+        return (pixel.y + pixel.x % 2 * 2) % 4;
+    case CellPattern::Columns:
+        return pixel.x % 2;
+    default:
+        return 0;
+    }
+}
+
+} // namespace
+
+double subpixel_shift(const LenticularSheet &sheet, glm::ivec2 pixel, unsigned color, PictureSize panel)
+{
+    if (sheet.cells.empty())
+        return (sheet.flip_subpixels ? 2 - color : color) / (3.0 * panel.width);
+    const auto cell = static_cast<size_t>(cell_of(sheet.pattern, pixel)) % sheet.cells.size();
+    const glm::dvec2 offset = sheet.cells[cell][color];
+    return offset.x / panel.width + sheet.tilt * offset.y / panel.height;
 }
 
 glm::dmat2 to_lens_matrix(const LensArray &lenses)

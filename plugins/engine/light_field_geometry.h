@@ -39,6 +39,11 @@ struct LightFieldGeometry {
  * and the angle between them is `cone` radians. A single view looks from the middle. */
 double view_slope(unsigned view, unsigned views, double cone);
 
+/* How far, in widths of the panel along its lenses' rows, the subpixel of red, green or blue (0, 1, 2) lies
+ * from where its pixel (x from the left, y from the bottom) is counted: a + tilt b of LenticularSheet. The
+ * shifts are the same every second pixel along x and every fourth along y. */
+double subpixel_shift(const LenticularSheet &sheet, glm::ivec2 pixel, unsigned color, PictureSize panel);
+
 /* Panel pixels to the array's own axes in units of the pitch. */
 glm::dmat2 to_lens_matrix(const LensArray &lenses);
 

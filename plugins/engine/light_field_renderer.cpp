@@ -49,7 +49,7 @@ cl::Kernel kernel_of(const Device &device, LightFieldLayout layout)
 {
     switch (layout) {
     case LightFieldLayout::Rgbd:
-        return Program(device, "light_field_rgbd").kernel("rgbd");
+        return Program(device, "light_field_rgbd").kernel("place_depth");
     case LightFieldLayout::Lenticular:
         return in_rows(device, layout) ? Program(device, "light_field_lenses").kernel("lenticular_rows")
                                        : Program(device, "light_field_panel").kernel("lenticular");
@@ -69,21 +69,33 @@ cl_float4 rows_of(const glm::dmat2 &m)
              static_cast<cl_float>(m[1][1])}};
 }
 
-unsigned rows_of_views(const LightFieldParameters &parameters)
-{
-    return parameters.layout == LightFieldLayout::Quilt ? parameters.rows : 1;
-}
-
-/* The slopes that a kernel looks up: of each view, or of even turns from the middle to the cone's edge. */
+/* The slopes that a kernel looks up: of each view, row by row from the bottom, or of even turns from the
+ * middle to the cone's edge. */
 std::vector<cl_float> slopes_of(const LightFieldParameters &parameters)
 {
     const bool lenticular = parameters.layout == LightFieldLayout::Lenticular;
     const unsigned turns = bins * bin_steps;
-    const unsigned views = lenticular ? 2 * turns + 1 : parameters.columns * rows_of_views(parameters);
+    const unsigned columns = parameters.columns, rows = parameters.rows;
+    const unsigned views = lenticular ? 2 * turns + 1 : columns * rows;
     std::vector<cl_float> slopes;
-    for (unsigned view = lenticular ? turns : 0; view < views; view++)
+    for (unsigned i = lenticular ? turns : 0; i < views; i++) {
+        const bool from_top = parameters.layout == LightFieldLayout::Views;
+        const unsigned view = from_top ? (rows - 1 - i / columns) * columns + i % columns : i;
         slopes.push_back(static_cast<cl_float>(view_slope(view, views, parameters.view_cone)));
+    }
     return slopes;
+}
+
+/* What lenticular kernels take for `shifts`. */
+std::vector<cl_float> shifts_of(const LightFieldShape &shape, const LenticularSheet &sheet)
+{
+    std::vector<cl_float> shifts;
+    for (int y = 0; y < 4; y++)
+        for (int x = 0; x < 2; x++)
+            for (unsigned byte = 0; byte < 3; byte++)
+                shifts.push_back(static_cast<cl_float>(subpixel_shift(
+                    sheet, {x, y}, is_blue_first(shape.format) ? 2 - byte : byte, shape.output)));
+    return shifts;
 }
 
 std::vector<float> index_positions()
@@ -123,17 +135,26 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
         if (built_ != parameters.layout)
             kernel_ = kernel_of(*device_, parameters.layout);
         built_ = parameters.layout;
-        if (parameters.layout == LightFieldLayout::Rgbd)
+        if (parameters.layout == LightFieldLayout::Rgbd) {
+            place_color_ = Program(*device_, "light_field_rgbd").kernel("place_color");
             return;
+        }
         if (!layers_ || layers_->size() != geometry_.layers)
             layers_.emplace(queue_, geometry_.layers, shape_.picture);
         const std::vector<cl_float> slopes = slopes_of(parameters);
-        slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
-        queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),
-                                             slopes.data());
+        slopes_ = upload(slopes);
+        shifts_ = upload(shifts_of(shape_, parameters.sheet));
         if (!follows_rays(*device_, parameters.layout))
             prepare_rows();
     });
+}
+
+cl::Buffer LightFieldRenderer::upload(const std::vector<cl_float> &values)
+{
+    const size_t bytes = values.size() * sizeof(cl_float);
+    cl::Buffer buffer = queue_.allocate(bytes);
+    queue_.commands().enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, values.data());
+    return buffer;
 }
 
 void LightFieldRenderer::prepare_rows()
@@ -207,7 +228,7 @@ void LightFieldRenderer::set_trace_arguments(cl_uint index, const Output &output
 
 void LightFieldRenderer::trace_views(cl_uint index, const Output &output)
 {
-    const cl_int2 layout = to_int2({parameters_.columns, rows_of_views(parameters_)});
+    const cl_int2 layout = to_int2({parameters_.columns, parameters_.rows});
     const cl_int2 view = to_int2(geometry_.view);
     if (in_rows(*device_, parameters_.layout))
         set_trace_arguments(index, output, slopes_, layout, view, columns_.first, columns_.count, scratch_,
@@ -219,17 +240,15 @@ void LightFieldRenderer::trace_views(cl_uint index, const Output &output)
 void LightFieldRenderer::trace_lenticular(cl_uint index, const Output &output)
 {
     const LenticularSheet &sheet = parameters_.sheet;
-    const bool descending = is_blue_first(shape_.format) != sheet.flip_subpixels;
     const auto pitch = static_cast<cl_float>(sheet.pitch), tilt = static_cast<cl_float>(sheet.tilt),
                center = static_cast<cl_float>(sheet.center);
-    const cl_int4 subpixels = descending ? cl_int4{{2, 1, 0, 0}} : cl_int4{{0, 1, 2, 0}};
     const cl_int4 flips{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}};
     if (in_rows(*device_, parameters_.layout))
-        set_trace_arguments(index, output, pitch, tilt, center, slopes_, subpixels, flips, columns_.first,
+        set_trace_arguments(index, output, pitch, tilt, center, slopes_, shifts_, flips, columns_.first,
                             columns_.count, scratch_, scratch_size_);
     else
         set_trace_arguments(index, output, pitch, tilt, center, static_cast<cl_float>(parameters_.view_cone),
-                            subpixels, flips);
+                            shifts_, flips);
 }
 
 void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
@@ -245,11 +264,19 @@ void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
 
 void LightFieldRenderer::copy_rgbd(const ColorAndDepth &pictures, const Output &output)
 {
+    const DepthSide side = parameters_.depth_side;
+    const PictureSize size = shape_.picture;
+    const cl_int width = static_cast<cl_int>(size.width), channels = pictures.channels;
+    const bool beside = side == DepthSide::Right || side == DepthSide::Left;
+    const bool depth_first = side == DepthSide::Left || side == DepthSide::Above;
+    const cl_ulong second =
+        beside ? static_cast<cl_ulong>(channels) * size.width : output.stride * size.height;
     queue_.begin_stage("copy");
-    queue_.run(kernel_, {shape_.output.width, shape_.output.height}, pictures.color, pictures.color_stride,
-               pictures.depth, pictures.depth_stride, positions_,
-               to_int2({shape_.picture.width, shape_.picture.height}),
-               static_cast<cl_int>(parameters_.invert_depth), output.rows, output.stride, pictures.channels);
+    queue_.run(place_color_, {size.width, size.height}, pictures.color, pictures.color_stride, width,
+               output.rows, depth_first ? second : cl_ulong{0}, output.stride, channels);
+    queue_.run(kernel_, {size.width, size.height}, pictures.depth, pictures.depth_stride, positions_, width,
+               static_cast<cl_int>(parameters_.invert_depth), output.rows, depth_first ? cl_ulong{0} : second,
+               output.stride, channels);
 }
 
 } // namespace dff

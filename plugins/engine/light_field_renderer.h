@@ -58,6 +58,7 @@ private:
     };
 
     cl::Buffer wrap(std::span<const std::byte> memory, cl_mem_flags access) const;
+    cl::Buffer upload(const std::vector<cl_float> &values);
     void prepare_rows();
     void trace(const Output &output);
     void trace_views(cl_uint index, const Output &output);
@@ -74,8 +75,8 @@ private:
     CommandQueue queue_;
     std::optional<LightFieldLayers> layers_;
     std::optional<LightFieldLayout> built_; /* what kernel_ is for */
-    cl::Kernel kernel_;
-    cl::Buffer positions_, slopes_;
+    cl::Kernel kernel_, place_color_;       /* the latter is of Rgbd */
+    cl::Buffer positions_, slopes_, shifts_;
 
     /* Of kernels in rows: the columns of the layers they work on, and their memory. */
     LightFieldGeometry::Columns columns_{};

@@ -5,6 +5,7 @@
 #include "light_field_settings.h"
 #include "optics/settings_file.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -42,6 +43,25 @@ double slope_of(const FileEntries &fields)
     return slope;
 }
 
+/* Red, green and blue of each cell, in the order in which CellPatternMode counts them. */
+void read_cells(const FileEntries &fields, LenticularSheet &sheet)
+{
+    constexpr size_t most_cells = 16;
+    constexpr Range pixels{-16.0, 16.0};
+    constexpr std::array<std::array<const char *, 2>, 3> names{
+        {{"ROffsetX", "ROffsetY"}, {"GOffsetX", "GOffsetY"}, {"BOffsetX", "BOffsetY"}}};
+    if (fields.is_empty_list("subpixelCells"))
+        return;
+    for (const FileEntries &entry : fields.list("subpixelCells", most_cells)) {
+        SubpixelCell cell;
+        for (size_t color = 0; color < 3; color++)
+            cell[color] = {number(entry, names[color][0], pixels), number(entry, names[color][1], pixels)};
+        sheet.cells.push_back(cell);
+    }
+    const double pattern = number_or(fields, "CellPatternMode", 0.0, {0.0, 4.0});
+    sheet.pattern = static_cast<CellPattern>(static_cast<int>(pattern));
+}
+
 /* Lenses along the width and, as they lean, along the height; there cannot be more than subpixels. */
 void check_lenses(const FileEntries &fields, const DisplayCalibration &calibration)
 {
@@ -72,6 +92,7 @@ DisplayCalibration DisplayCalibration::load(const std::string &path)
     sheet.pitch = number(fields, "pitch", {0.01, 10000.0}) * width / number(fields, "DPI", {1.0, 10000.0}) *
                   std::cos(std::atan(1.0 / slope));
     sheet.tilt = height / (width * slope) * (sheet.flip_x ? -1.0 : 1.0);
+    read_cells(fields, sheet);
     check_lenses(fields, calibration);
     return calibration;
 }

@@ -17,7 +17,10 @@ struct DisplayCalibration {
     /* Reads a file (optics/settings_file.h) with the fields of Looking Glass displays, each a number or a map
      * with a number in `value`: screenW and screenH (pixels), DPI (pixels an inch), pitch (lenses an inch
      * across them), slope (of the lenses: rise by run), center; and if they are there invView, flipImageX,
-     * flipImageY, flipSubp (0 or 1), viewCone (degrees).
+     * flipImageY, flipSubp (0 or 1), viewCone (degrees),
+     * and of panels whose colours are not beside each other subpixelCells (a list of ROffsetX, ROffsetY,
+     * GOffsetX
+     * ... in pixels to the right and up) with CellPatternMode (0 to 4, see CellPattern).
      *
      * pitch = pitch screenW / DPI cos(atan(1 / slope)) lenses along the width,
      * tilt = screenH / (screenW slope), negative if flipImageX.

@@ -47,7 +47,7 @@ LightFieldPlan::LightFieldPlan(const LightFieldSettings &settings, PictureSize p
     const bool is_quilt = layout == LightFieldLayout::Quilt;
     double cone = settings.view_cone * std::numbers::pi / 180.0;
     parameters.columns = parameters.columns ? parameters.columns : is_quilt ? 8 : 2;
-    parameters.rows = parameters.rows ? parameters.rows : 6;
+    parameters.rows = parameters.rows ? parameters.rows : is_quilt ? 6 : 1;
     any_size = layout != LightFieldLayout::Rgbd && layout != LightFieldLayout::Lenticular;
 
     if (layout == LightFieldLayout::Lenticular) {
@@ -60,7 +60,9 @@ LightFieldPlan::LightFieldPlan(const LightFieldSettings &settings, PictureSize p
         output = calibration.panel;
         cone = cone > 0.0 ? cone : calibration.view_cone;
     } else if (layout == LightFieldLayout::Rgbd) {
-        output.width *= 2;
+        const bool beside =
+            parameters.depth_side == DepthSide::Right || parameters.depth_side == DepthSide::Left;
+        (beside ? output.width : output.height) *= 2;
     } else if (layout == LightFieldLayout::Elemental) {
         check_gap(parameters.lenses);
     } else if (is_quilt) {
@@ -70,6 +72,7 @@ LightFieldPlan::LightFieldPlan(const LightFieldSettings &settings, PictureSize p
         one.columns = one.rows = 1;
         output = quilt_size(one, picture);
         output.width *= parameters.columns;
+        output.height *= parameters.rows;
     }
     parameters.view_cone = cone > 0.0 ? cone : default_cone * std::numbers::pi / 180.0;
 }

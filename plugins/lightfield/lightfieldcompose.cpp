@@ -48,6 +48,7 @@
 #include "light_field_picture.h"
 #include "lightfieldcompose_properties.h"
 
+#include <cmath>
 #include <gst/dff/dff.h>
 
 GST_DEBUG_CATEGORY_STATIC(light_field_compose_debug);
@@ -220,6 +221,28 @@ static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator
     return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->aggregate();
 }
 
+namespace {
+
+/* How two views are packed, in GStreamer's words; nullptr for anything else. */
+const char *stereo_mode(const dff::LightFieldParameters &parameters)
+{
+    if (parameters.layout != dff::LightFieldLayout::Views || parameters.columns * parameters.rows != 2)
+        return nullptr;
+    return gst_video_multiview_mode_to_caps_string(parameters.columns == 2
+                                                       ? GST_VIDEO_MULTIVIEW_MODE_SIDE_BY_SIDE
+                                                       : GST_VIDEO_MULTIVIEW_MODE_TOP_BOTTOM);
+}
+
+/* Whether views of this size are squeezed to half their width or height: nearer to that than to their own
+ * aspect. */
+bool is_half(const dff::LightFieldPlan &plan, double width, double height)
+{
+    const double squeezed = width / height * plan.output.height / plan.output.width;
+    return plan.parameters.columns == 2 ? squeezed < std::sqrt(0.5) : squeezed > std::sqrt(2.0);
+}
+
+} // namespace
+
 /* What the plan makes of the colour's caps, in any format of RGB; first that of the colour, if it is one. */
 static GstCaps *output_caps(const GstVideoInfo &color, const dff::LightFieldPlan &plan)
 {
@@ -231,6 +254,8 @@ static GstCaps *output_caps(const GstVideoInfo &color, const dff::LightFieldPlan
                         static_cast<gint>(plan.output.height), "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1,
                         "framerate", GST_TYPE_FRACTION, GST_VIDEO_INFO_FPS_N(&color),
                         GST_VIDEO_INFO_FPS_D(&color), nullptr);
+    if (const char *mode = stereo_mode(plan.parameters))
+        gst_caps_set_simple(caps, "multiview-mode", G_TYPE_STRING, mode, nullptr);
     if (plan.any_size)
         gst_caps_set_simple(caps, "width", GST_TYPE_INT_RANGE, 1, G_MAXINT, "height", GST_TYPE_INT_RANGE, 1,
                             G_MAXINT, nullptr);
@@ -270,6 +295,11 @@ static GstCaps *gst_light_field_compose_fixate_src_caps(GstAggregator *aggregato
     GstStructure *structure = gst_caps_get_structure(caps, 0);
     gst_structure_fixate_field_nearest_int(structure, "width", static_cast<gint>(plan.output.width));
     gst_structure_fixate_field_nearest_int(structure, "height", static_cast<gint>(plan.output.height));
+    gint width = 0, height = 0;
+    if (stereo_mode(plan.parameters) && gst_structure_get_int(structure, "width", &width) &&
+        gst_structure_get_int(structure, "height", &height) && is_half(plan, width, height))
+        gst_structure_set(structure, "multiview-flags", GST_TYPE_VIDEO_MULTIVIEW_FLAGSET,
+                          GST_VIDEO_MULTIVIEW_FLAGS_HALF_ASPECT, GST_FLAG_SET_MASK_EXACT, nullptr);
     return gst_caps_fixate(caps);
 }
 
@@ -280,9 +310,9 @@ static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggre
     if (!gst_video_info_from_caps(&info, caps))
         return FALSE;
     const dff::LightFieldParameters &wanted = state.plan().parameters;
-    const bool is_quilt = wanted.layout == dff::LightFieldLayout::Quilt;
-    const guint columns = is_quilt || wanted.layout == dff::LightFieldLayout::Views ? wanted.columns : 1;
-    const guint rows = is_quilt ? wanted.rows : 1;
+    const bool has_views =
+        wanted.layout == dff::LightFieldLayout::Quilt || wanted.layout == dff::LightFieldLayout::Views;
+    const guint columns = has_views ? wanted.columns : 1, rows = has_views ? wanted.rows : 1;
     if (GST_VIDEO_INFO_WIDTH(&info) < static_cast<gint>(columns) ||
         GST_VIDEO_INFO_HEIGHT(&info) < static_cast<gint>(rows)) {
         GST_ELEMENT_ERROR(aggregator, STREAM, FORMAT,

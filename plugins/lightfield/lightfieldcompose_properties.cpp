@@ -24,6 +24,7 @@ enum : guint {
     ZeroParallaxDioptre,
     DepthGain,
     InvertDepth,
+    DepthSide,
     Fill,
     DisplayCalibration,
     Pitch,
@@ -49,16 +50,29 @@ GType layout_type()
     static const GEnumValue values[] = {
         {static_cast<int>(LightFieldLayout::Quilt),
          "Views in columns and rows, the leftmost at the bottom left", "quilt"},
-        {static_cast<int>(LightFieldLayout::Rgbd), "Colour on the left, depth on the right", "rgbd"},
+        {static_cast<int>(LightFieldLayout::Rgbd), "Colour, and depth on the depth-side of it", "rgbd"},
         {static_cast<int>(LightFieldLayout::Lenticular), "Pixels of a panel under slanted cylindrical lenses",
          "lenticular"},
         {static_cast<int>(LightFieldLayout::Elemental), "Pixels of a panel under an array of round lenses",
          "elemental"},
         {static_cast<int>(LightFieldLayout::Views),
-         "Views side by side, the leftmost first; 2 columns are stereo", "views"},
+         "Views in columns and rows, the leftmost at the top left; two are stereo", "views"},
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstLightFieldLayout", values);
+    return type;
+}
+
+GType depth_side_type()
+{
+    static const GEnumValue values[] = {
+        {static_cast<int>(DepthSide::Right), "Depth on the right of the colour", "right"},
+        {static_cast<int>(DepthSide::Left), "Depth on the left", "left"},
+        {static_cast<int>(DepthSide::Below), "Depth below", "below"},
+        {static_cast<int>(DepthSide::Above), "Depth above", "above"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstLightFieldDepthSide", values);
     return type;
 }
 
@@ -129,7 +143,8 @@ void install_view_properties(GObjectClass *klass, const LightFieldSettings &defa
             g_param_spec_uint("columns", "Columns", "Views in a row; 0: 8 in a quilt, 2 of layout=views", 0,
                               64, p.columns, playing));
     install(property::Rows,
-            g_param_spec_uint("rows", "Rows", "Rows of views in a quilt; 0: 6", 0, 64, p.rows, playing));
+            g_param_spec_uint("rows", "Rows", "Rows of views; 0: 6 in a quilt, 1 of layout=views", 0, 64,
+                              p.rows, playing));
     install(property::ViewAspect,
             g_param_spec_double(
                 "view-aspect", "View aspect",
@@ -161,6 +176,10 @@ void install_view_properties(GObjectClass *klass, const LightFieldSettings &defa
     install(property::InvertDepth,
             g_param_spec_boolean("invert-depth", "Invert depth",
                                  "In layout=rgbd: near is black instead of white", p.invert_depth, playing));
+    install(property::DepthSide,
+            g_param_spec_enum("depth-side", "Depth side",
+                              "Of layout=rgbd: where depth is, seen from the colour", depth_side_type(),
+                              static_cast<int>(p.depth_side), playing));
     install(property::Fill,
             g_param_spec_enum("fill", "Fill", "What is shown where a view sees behind an edge", fill_type(),
                               p.fill, playing));
@@ -285,7 +304,7 @@ void install_light_field_properties(GObjectClass *object_class)
     LightFieldSettings defaults;
     install_view_properties(object_class, defaults);
     install_lens_properties(object_class, defaults);
-    for (const GType type : {layout_type(), preset_type(), fill_type(), grid_type()})
+    for (const GType type : {layout_type(), depth_side_type(), preset_type(), fill_type(), grid_type()})
         gst_type_mark_as_plugin_api(type, static_cast<GstPluginAPIFlags>(0));
 }
 
@@ -322,6 +341,9 @@ bool set_light_field_property(LightFieldSettings &settings, guint id, const GVal
         return true;
     case property::InvertDepth:
         p.invert_depth = g_value_get_boolean(value);
+        return true;
+    case property::DepthSide:
+        p.depth_side = static_cast<DepthSide>(g_value_get_enum(value));
         return true;
     case property::Fill:
         p.fill = g_value_get_enum(value) != 0;
@@ -364,6 +386,9 @@ bool get_light_field_property(const LightFieldSettings &settings, guint id, GVal
         return true;
     case property::InvertDepth:
         g_value_set_boolean(value, p.invert_depth);
+        return true;
+    case property::DepthSide:
+        g_value_set_enum(value, static_cast<int>(p.depth_side));
         return true;
     case property::Fill:
         g_value_set_enum(value, p.fill);

@@ -9,7 +9,7 @@
 namespace dff {
 
 /* The properties that say what to make; those of the element itself come after them. */
-constexpr guint light_field_properties_end = 20;
+constexpr guint light_field_properties_end = 21;
 
 void install_light_field_properties(GObjectClass *object_class);
 

@@ -252,6 +252,12 @@ std::vector<double> FileEntries::numbers(const char *name, size_t least, size_t 
     return numbers;
 }
 
+bool FileEntries::is_empty_list(const char *name) const
+{
+    const cv::FileNode node = find(name);
+    return node.empty() || (node.isSeq() && node.size() == 0);
+}
+
 std::vector<FileEntries> FileEntries::list(const char *name, size_t most) const
 {
     const cv::FileNode node = find(name);

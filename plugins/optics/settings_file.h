@@ -30,6 +30,9 @@ public:
     bool has(const char *name) const { return !find(name).empty(); }
     bool has_entries(const char *name) const { return find(name).isMap(); }
 
+    /* Whether there is nothing of this name, or a list with nothing in it. */
+    bool is_empty_list(const char *name) const;
+
     double number(const char *name, Range range) const;
     double number_or(const char *name, double otherwise, Range range) const;
     unsigned whole_number(const char *name, unsigned least, unsigned most) const;

@@ -71,6 +71,7 @@ std::vector<Case> cases()
     LightFieldParameters stereo = quilt;
     stereo.layout = LightFieldLayout::Views;
     stereo.columns = 2;
+    stereo.rows = 1;
     stereo.view_aspect = 0.0;
     LightFieldParameters lenticular = quilt;
     lenticular.layout = LightFieldLayout::Lenticular;

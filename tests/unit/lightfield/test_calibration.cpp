@@ -61,6 +61,26 @@ TEST(Calibration, reads_yaml_with_plain_numbers)
     EXPECT_EQ(calibration.view_cone, 0.0);
 }
 
+TEST(Calibration, reads_where_the_colours_of_newer_panels_are)
+{
+    const std::string cells =
+        R"(,"CellPatternMode":{"value":4.0},"subpixelCells":[{"ROffsetX":-0.25,"ROffsetY":-0.31,"GOffsetX":-0.25,)"
+        R"("GOffsetY":0.28,"BOffsetX":0.25,"BOffsetY":0.0},{"ROffsetX":0.25,"ROffsetY":-0.31,"GOffsetX":0.25,)"
+        R"("GOffsetY":0.28,"BOffsetX":-0.25,"BOffsetY":0.0}]})";
+    const std::string before = display.substr(0, display.size() - 1);
+    const DisplayCalibration calibration = DisplayCalibration::load(write("json", before + cells));
+    ASSERT_EQ(calibration.sheet.cells.size(), 2U);
+    EXPECT_EQ(calibration.sheet.pattern, dff::CellPattern::Columns);
+    EXPECT_EQ(calibration.sheet.cells[1][0], (glm::dvec2(0.25, -0.31)));
+    EXPECT_EQ(calibration.sheet.cells[0][2], (glm::dvec2(0.25, 0.0)));
+
+    const std::string none = before + R"(,"subpixelCells":[],"CellPatternMode":{"value":0}})";
+    EXPECT_TRUE(DisplayCalibration::load(write("json", none)).sheet.cells.empty());
+    const std::string cut = before + R"(,"subpixelCells":[{"ROffsetX":0.1}]})";
+    EXPECT_NE(refusal_of(write("json", cut)).find("subpixelCells[0].ROffsetY is missing"), std::string::npos)
+        << refusal_of(write("json", cut));
+}
+
 TEST(Calibration, says_what_is_wrong_with_a_file)
 {
     EXPECT_NE(refusal_of("/nonexistent.json").find("/nonexistent.json"), std::string::npos);

@@ -68,6 +68,30 @@ TEST(Geometry, a_lens_without_a_gap_fans_out_over_the_view_cone)
     EXPECT_NEAR(2.0 * std::atan(6.0 / lens_gap(parameters)), parameters.view_cone, 1e-12);
 }
 
+TEST(Geometry, colours_lie_where_their_cell_says)
+{
+    const PictureSize panel{200, 100};
+    LenticularSheet sheet;
+    sheet.tilt = -0.5;
+    EXPECT_NEAR(subpixel_shift(sheet, {3, 5}, 2, panel), 2.0 / 600.0, 1e-15);
+    sheet.flip_subpixels = true;
+    EXPECT_NEAR(subpixel_shift(sheet, {3, 5}, 2, panel), 0.0, 1e-15);
+    for (int cell = 0; cell < 4; cell++)
+        sheet.cells.push_back({{{0.01 * cell, 0.2}, {0.1, 0.0}, {0.2, 0.0}}});
+    const auto cell_at = [&](CellPattern pattern, int x, int y) {
+        sheet.pattern = pattern;
+        return std::lround((subpixel_shift(sheet, {x, y}, 0, panel) + 0.5 * 0.2 / 100.0) * 200.0 / 0.01);
+    };
+    EXPECT_EQ(cell_at(CellPattern::Single, 1, 1), 0);
+    EXPECT_EQ(cell_at(CellPattern::Checkerboard, 1, 1), 0);
+    EXPECT_EQ(cell_at(CellPattern::Checkerboard, 1, 2), 1);
+    EXPECT_EQ(cell_at(CellPattern::Rows, 1, 7), 3);
+    EXPECT_EQ(cell_at(CellPattern::ShiftedRows, 1, 7), 1);
+    EXPECT_EQ(cell_at(CellPattern::Columns, 5, 3), 1);
+    sheet.cells.resize(2);
+    EXPECT_EQ(cell_at(CellPattern::Rows, 1, 7), 1) << "fewer cells are counted over again";
+}
+
 TEST(Presets, are_as_the_maker_asks)
 {
     ASSERT_EQ(display_presets().size(), 7u);

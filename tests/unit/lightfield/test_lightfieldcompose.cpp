@@ -106,8 +106,12 @@ TEST(LightFieldCompose, every_layout_has_its_size)
         {"preset=looking-glass-portrait ! video/x-raw,width=400,height=300", 400, 300},
         {"preset=looking-glass-portrait", 3360, 3360},
         {"layout=rgbd", 2 * 96, 64},
+        {"layout=rgbd depth-side=left", 2 * 96, 64},
+        {"layout=rgbd depth-side=below", 96, 2 * 64},
+        {"layout=rgbd depth-side=above", 96, 2 * 64},
         {"layout=views", 2 * 96, 64},
         {"layout=views columns=5", 5 * 96, 64},
+        {"layout=views columns=1 rows=2", 96, 2 * 64},
         {"layout=elemental", 96, 64},
         {"layout=elemental grid=hex rotation=20 ! video/x-raw,width=200,height=100", 200, 100},
     };
@@ -119,6 +123,31 @@ TEST(LightFieldCompose, every_layout_has_its_size)
         const GstVideoInfo info = info_of(sample);
         EXPECT_EQ(GST_VIDEO_INFO_WIDTH(&info), width) << layout;
         EXPECT_EQ(GST_VIDEO_INFO_HEIGHT(&info), height) << layout;
+    }
+}
+
+TEST(LightFieldCompose, two_views_say_how_they_are_packed)
+{
+    const auto full = GST_VIDEO_MULTIVIEW_FLAGS_NONE, half = GST_VIDEO_MULTIVIEW_FLAGS_HALF_ASPECT;
+    const std::vector<std::tuple<std::string, GstVideoMultiviewMode, GstVideoMultiviewFlags>> layouts{
+        {"layout=views", GST_VIDEO_MULTIVIEW_MODE_SIDE_BY_SIDE, full},
+        {"layout=views ! video/x-raw,multiview-mode=side-by-side", GST_VIDEO_MULTIVIEW_MODE_SIDE_BY_SIDE,
+         full},
+        {"layout=views ! video/x-raw,width=96,height=64", GST_VIDEO_MULTIVIEW_MODE_SIDE_BY_SIDE, half},
+        {"layout=views columns=1 rows=2", GST_VIDEO_MULTIVIEW_MODE_TOP_BOTTOM, full},
+        {"layout=views columns=1 rows=2 ! video/x-raw,width=96,height=64",
+         GST_VIDEO_MULTIVIEW_MODE_TOP_BOTTOM, half},
+        {"layout=views columns=5", GST_VIDEO_MULTIVIEW_MODE_NONE, full},
+        {"layout=quilt columns=2 rows=1", GST_VIDEO_MULTIVIEW_MODE_NONE, full},
+    };
+    for (const auto &[layout, mode, flags] : layouts) {
+        TestPipeline pipeline(scene() + layout + " ! appsink name=out sync=false");
+        pipeline.play();
+        g_autoptr(GstSample) sample = pipeline.pull("out");
+        ASSERT_NE(sample, nullptr) << layout;
+        const GstVideoInfo info = info_of(sample);
+        EXPECT_EQ(GST_VIDEO_INFO_MULTIVIEW_MODE(&info), mode) << layout;
+        EXPECT_EQ(GST_VIDEO_INFO_MULTIVIEW_FLAGS(&info), flags) << layout;
     }
 }
 

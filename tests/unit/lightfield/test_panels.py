@@ -25,7 +25,7 @@ class Lenticular(unittest.TestCase):
         columns = np.arange(256, dtype=np.uint8)
         color = np.repeat(np.tile(columns, (self.HEIGHT, 1))[:, :, None], 3, axis=2)
         depth = np.ones((self.HEIGHT, 256), np.uint16)
-        text = json.dumps({name: {'value': float(value)} for name, value in display.items()})
+        text = json.dumps({name: value if isinstance(value, list) else {'value': float(value)} for name, value in display.items()})
         return light_field.compose(color, depth, f'layout=lenticular zero-parallax=1 depth-gain={self.GAIN}', calibration=text)
 
     def views_shown(self, panel, flipped):
@@ -44,7 +44,12 @@ class Lenticular(unittest.TestCase):
         x = (np.arange(width) + 0.5)[None, :, None] / width
         y = 1 - (np.arange(height) + 0.5)[:, None, None] / height
         subpixel = np.array([2, 1, 0] if display['flipSubp'] else [0, 1, 2])[None, None, :]
-        view = (x + subpixel / (3 * width) + y * tilt) * pitch - display['center']
+        shift = subpixel / (3 * width)
+        if 'subpixelCells' in display:  # two, in turns along x
+            cells = np.array([[(cell[f'{color}OffsetX'] / width + tilt * cell[f'{color}OffsetY'] / height) for color in 'RGB']
+                              for cell in display['subpixelCells']])
+            shift = cells[np.arange(width) % 2][None, :, :]
+        view = (x + shift + y * tilt) * pitch - display['center']
         view -= np.floor(view)
         return 1 - view if display['invView'] else view
 
@@ -70,6 +75,11 @@ class Lenticular(unittest.TestCase):
 
     def test_subpixels_from_blue_to_red(self):
         self.check(flipSubp=1)
+
+    def test_colours_in_cells(self):
+        cell = {'ROffsetX': -0.25, 'ROffsetY': -0.31, 'GOffsetX': -0.25, 'GOffsetY': 0.28, 'BOffsetX': 0.25, 'BOffsetY': 0.0}
+        mirrored = {name: -offset if name.endswith('X') else offset for name, offset in cell.items()}
+        self.check(CellPatternMode=4, subpixelCells=[cell, mirrored])
 
     def test_lenses_that_lean_to_the_right(self):
         self.check(slope=5.1, center=-0.2)

@@ -192,6 +192,52 @@ TEST(Renderer, rgbd_is_colour_and_depth_and_near_is_white)
     }
 }
 
+TEST(Renderer, depth_is_on_any_side_of_its_colour)
+{
+    const Picture picture({30, 20});
+    LightFieldParameters parameters;
+    parameters.layout = LightFieldLayout::Rgbd;
+    const std::vector<uint8_t> right = render(picture, {60, 20}, parameters);
+    struct Case {
+        DepthSide side;
+        PictureSize output;
+        unsigned color_x, color_y, depth_x, depth_y;
+    };
+    for (const Case &c :
+         {Case{DepthSide::Left, {60, 20}, 30, 0, 0, 0}, Case{DepthSide::Below, {30, 40}, 0, 0, 0, 20},
+          Case{DepthSide::Above, {30, 40}, 0, 20, 0, 0}}) {
+        parameters.depth_side = c.side;
+        const std::vector<uint8_t> found = render(picture, c.output, parameters);
+        const auto at = [&](unsigned x, unsigned y) { return found[(y * c.output.width + x) * 3 + 1]; };
+        for (unsigned y = 0; y < 20; y++)
+            for (unsigned x = 0; x < 30; x++) {
+                ASSERT_EQ(at(c.color_x + x, c.color_y + y), right[(y * 60 + x) * 3 + 1]);
+                ASSERT_EQ(at(c.depth_x + x, c.depth_y + y), right[(y * 60 + 30 + x) * 3 + 1]);
+            }
+    }
+}
+
+TEST(Renderer, views_below_each_other_are_those_beside_each_other)
+{
+    const Picture picture({30, 20});
+    LightFieldParameters parameters;
+    parameters.layout = LightFieldLayout::Views;
+    parameters.columns = 2;
+    parameters.rows = 1;
+    const std::vector<uint8_t> beside = render(picture, {60, 20}, parameters);
+    std::swap(parameters.columns, parameters.rows);
+    for (const KernelStyle style : {KernelStyle::Pixels, KernelStyle::Tiles}) {
+        const std::vector<uint8_t> below = render(picture, {30, 40}, parameters, style);
+        size_t different = 0;
+        for (unsigned view = 0; view < 2; view++)
+            for (unsigned y = 0; y < 20; y++)
+                for (unsigned i = 0; i < 90; i++)
+                    different +=
+                        std::abs(below[(view * 20 + y) * 90 + i] - beside[y * 180 + view * 90 + i]) > 2;
+        EXPECT_LE(different, 4U) << "the left eye's view is on top";
+    }
+}
+
 TEST(Renderer, both_kinds_of_kernels_show_the_same_when_views_are_small)
 {
     const Picture picture({150, 100});
@@ -202,11 +248,15 @@ TEST(Renderer, both_kinds_of_kernels_show_the_same_when_views_are_small)
     LightFieldParameters panel;
     panel.layout = LightFieldLayout::Lenticular;
     panel.sheet = {11.3, 0.17, 0.1, false, false, true, false};
+    LightFieldParameters cells = panel;
+    cells.sheet.cells = {{{{-0.25, -0.3}, {-0.25, 0.3}, {0.25, 0.0}}},
+                         {{{0.25, -0.3}, {0.25, 0.3}, {-0.25, 0.0}}}};
+    cells.sheet.pattern = CellPattern::Checkerboard;
     LightFieldParameters array;
     array.layout = LightFieldLayout::Elemental;
     array.lenses.pitch = 6.3;
     array.lenses.grid = LensGrid::Hexagonal;
-    for (const LightFieldParameters &parameters : {quilt, panel, array}) {
+    for (const LightFieldParameters &parameters : {quilt, panel, cells, array}) {
         const PictureSize output{4 * 37, 3 * 61};
         const std::vector<uint8_t> by_pixels = render(picture, output, parameters, KernelStyle::Pixels);
         const std::vector<uint8_t> by_rows = render(picture, output, parameters, KernelStyle::Tiles);
@@ -225,6 +275,7 @@ TEST(Renderer, the_same_point_looks_the_same_in_every_view)
     LightFieldParameters parameters;
     parameters.layout = LightFieldLayout::Views;
     parameters.columns = 3;
+    parameters.rows = 1;
     parameters.zero_parallax = 1.0;
     parameters.depth_gain = 0.1; /* 12 pixels high */
     parameters.view_cone = 2.0 * std::atan(0.5);
@@ -249,6 +300,7 @@ TEST(Renderer, near_things_hide_far_ones_and_holes_show_the_background)
     LightFieldParameters parameters;
     parameters.layout = LightFieldLayout::Views;
     parameters.columns = 2;
+    parameters.rows = 1;
     parameters.depth_gain = 0.2;
     parameters.view_cone = 2.0 * std::atan(0.5); /* the thing moves by 5, the ground by -5 */
     for (const auto &[fill, style] : {std::pair(true, KernelStyle::Tiles),
@@ -301,6 +353,7 @@ TEST(Renderer, without_any_depth_all_views_are_the_picture)
     LightFieldParameters parameters;
     parameters.layout = LightFieldLayout::Views;
     parameters.columns = 2;
+    parameters.rows = 1;
     const std::vector<uint8_t> views = render(picture, {120, 20}, parameters);
     for (size_t i = 0; i < picture.color.size(); i++)
         EXPECT_EQ(views[i / 180 * 360 + i % 180], picture.color[i]);

@@ -16,6 +16,7 @@ LightFieldParameters five_views()
     LightFieldParameters parameters;
     parameters.layout = LightFieldLayout::Views;
     parameters.columns = 5;
+    parameters.rows = 1;
     parameters.view_cone = 20.0 / 180.0 * CV_PI;
     return parameters;
 }
