@@ -7,6 +7,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "focalstack/lanczos_warp.h"
+
 namespace dff {
 namespace {
 
@@ -137,6 +139,8 @@ void undo_warp(const cv::Mat &plane, cv::Mat aligned, const PlaneWarp &warp, int
         return;
     }
     const cv::Matx33d matrix = warp.pixel_matrix(plane.size(), step);
+    if (warp_nearly_in_place(plane, aligned, matrix))
+        return;
     constexpr int how = cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP;
 
     /* The affine function is the faster one. */

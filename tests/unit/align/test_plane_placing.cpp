@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/plane_placing.h"
 
+#include "focalstack/lanczos_warp.h"
 #include "shaken_stack.h"
 
 #include <gtest/gtest.h>
@@ -81,6 +82,44 @@ TEST(UndoWarp, a_ramp_of_16_bits_keeps_its_steps)
         }
         EXPECT_LE(farthest, 1.0);
         EXPECT_EQ(values.size(), static_cast<std::size_t>(columns - 2 * beside));
+    }
+}
+
+TEST(UndoWarp, small_warps_are_those_of_OpenCV_borders_included)
+{
+    const cv::Size large(203, 151);
+    for (const int type : {CV_8UC1, CV_8UC2, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC4}) {
+        const double most = CV_MAT_DEPTH(type) == CV_16U ? 65535.0 : 255.0;
+        cv::Mat plane(large, type), expected, warped(large, type);
+        cv::RNG random(3);
+        random.fill(plane, cv::RNG::UNIFORM, 0.0, most);
+        cv::GaussianBlur(plane, plane, {}, 1.2);
+        cv::normalize(plane, plane, 0.0, most, cv::NORM_MINMAX);
+        for (const dff::PlaneWarp &warp :
+             {dff::PlaneWarp(1.0, 0.0, 3.3, -2.6), dff::PlaneWarp(1.03, 0.0, 0.5, 0.2),
+              dff::PlaneWarp(0.97, 0.004, 20.0, -9.0), dff::PlaneWarp(1.0, -0.018, 0.0, 0.0),
+              dff::PlaneWarp(cv::Matx33d(1, 0.001, 1.5, -0.001, 1, 2.5, 3e-5, -2e-5, 1))}) {
+            const cv::Matx33d matrix = warp.pixel_matrix(large);
+            cv::warpPerspective(plane, expected, matrix, large, cv::INTER_LANCZOS4 | cv::WARP_INVERSE_MAP,
+                                cv::BORDER_REFLECT_101);
+            ASSERT_TRUE(dff::warp_nearly_in_place(plane, warped, matrix));
+            EXPECT_GT(cv::PSNR(warped, expected, most), 40.0) << "type " << type << " warp " << warp.matrix();
+            EXPECT_LT(cv::norm(warped, expected, cv::NORM_INF), 0.08 * most);
+        }
+    }
+}
+
+TEST(UndoWarp, large_warps_are_left_to_OpenCV)
+{
+    cv::Mat plane(150, 200, CV_8U, cv::Scalar(7)), warped(plane.size(), CV_8U, cv::Scalar(9));
+    for (const dff::PlaneWarp &warp :
+         {dff::PlaneWarp(1.0, 0.05, 0.0, 0.0), dff::PlaneWarp(1.3, 0.0, 0.0, 0.0),
+          dff::PlaneWarp(1.0, 0.0, 80.0, 0.0)}) {
+        EXPECT_FALSE(dff::warp_nearly_in_place(plane, warped, warp.pixel_matrix(plane.size())));
+        EXPECT_EQ(cv::norm(warped, cv::NORM_INF), 9.0);
+        dff::undo_warp(plane, warped, warp);
+        EXPECT_EQ(cv::norm(warped, cv::NORM_INF), 7.0);
+        warped.setTo(9);
     }
 }
 
