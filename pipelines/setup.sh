@@ -6,7 +6,8 @@
 run_packages=(
     gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good gstreamer1.0-plugins-bad
     gstreamer1.0-plugins-ugly gstreamer1.0-libav pocl-opencl-icd
-    glib-networking python3-openimageio python3-numpy python3-gi gir1.2-gstreamer-1.0)
+    glib-networking python3-openimageio python3-numpy python3-gi gir1.2-gstreamer-1.0
+    gstreamer1.0-nice gir1.2-gst-plugins-base-1.0 gir1.2-gst-plugins-bad-1.0 gir1.2-soup-3.0)
 build_packages=(
     build-essential pkg-config meson ninja-build
     libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgstrtspserver-1.0-dev gobject-introspection libgirepository1.0-dev
@@ -15,7 +16,7 @@ build_packages=(
 test_packages=(
     libgtest-dev libasan8 libubsan1 clang-format clang-tidy clang libclang-rt-dev
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
-    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg python3-distributed)
+    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg python3-distributed chromium chromium-driver python3-selenium)
 
 # For the virtual machine of tests/rig/vm, which is one of this kind.
 [ "$(dpkg --print-architecture 2>/dev/null)" != amd64 ] || test_packages+=(

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 the gst-plugins-dff authors
+"""The pipeline in front of the page: what --launch says, its outputs, and that it goes on."""
+import concurrent.futures
+import logging
+
+from gi.repository import GLib, Gst
+
+from dff_studio import Unusable
+
+OUTPUTS = ('depth', 'aif', 'planes', 'confidence', 'motion')  # the first three as dff-rtsp-server takes them
+WAITS = (0.5, 1, 2, 4, 8, 10)  # seconds before the next start, after each failure in a row
+log = logging.getLogger('dff-studio')
+
+
+def parse(launch):
+    try:
+        parsed = Gst.parse_launch_full(launch, None, Gst.ParseFlags.FATAL_ERRORS)
+    except GLib.Error as error:
+        raise Unusable(f'The source pipeline cannot be used: {error.message}') from None
+    if isinstance(parsed, Gst.Pipeline):
+        return parsed
+    pipeline = Gst.Pipeline.new(None)
+    pipeline.add(parsed)
+    return pipeline
+
+
+def items(iterator):
+    """What a GstIterator gives; from the start again where it changed on the way."""
+    found = []
+    while True:
+        result, item = iterator.next()
+        if result == Gst.IteratorResult.OK:
+            found.append(item)
+        elif result == Gst.IteratorResult.RESYNC:
+            iterator.resync()
+            found = []
+        else:
+            return found
+
+
+def free_pad(bin_, name):
+    """The free source pad of the element of that name, a new one if it is a tee, or else that of this name of any element:
+    the rule of dff-rtsp-server."""
+    if element := bin_.get_by_name(name):
+        free = [pad for pad in element.srcpads if not pad.is_linked()]
+        if free:
+            return free[0]
+        return element.request_pad_simple('src_%u') if element.get_pad_template('src_%u') else None
+    for child in items(bin_.iterate_elements()):
+        for pad in child.srcpads:
+            if pad.get_name() == name and not pad.is_linked():
+                return pad
+    return None
+
+
+def of_factory(bin_, name):
+    """The first element of that factory, in bins too."""
+    for child in items(bin_.iterate_recurse()):
+        if child.get_factory() and child.get_factory().get_name() == name:
+            return child
+    return None
+
+
+class Source:
+    """Runs while it is wanted; started again, for ever, when it fails or ends. `on_sample(output, sample, age)` is called by its
+    streaming threads, `age` in seconds since the first exposure; `on_state(text)` by the main loop, empty when it runs. What
+    takes its time, starting and stopping a camera, is done by a thread of its own."""
+
+    def __init__(self, launch, on_sample, on_state):
+        self.on_sample, self.on_state = on_sample, on_state
+        self.pipeline = parse(launch)
+        self.sinks = {}
+        for name in OUTPUTS[:3]:
+            if pad := free_pad(self.pipeline, name):
+                self.tap(name, pad, self.pipeline)
+        if not self.sinks.keys() & {'depth', 'aif'}:
+            raise Unusable('The source pipeline has no output: name the element whose source pad gives the depth depth, that of '
+                           'the all-in-focus picture aif; if the pad is linked, a tee behind it')
+        self.depth_element = of_factory(self.pipeline, 'dffdepth')
+        for name in OUTPUTS[3:]:
+            self.tap_overlay(name)
+        self.pipeline.use_clock(Gst.SystemClock.obtain())
+        bus = self.pipeline.get_bus()
+        bus.add_signal_watch()
+        bus.connect('message', self.take_message)
+        self.worker = concurrent.futures.ThreadPoolExecutor(1, 'source')
+        self.wanted = self.failed = self.delivered = False
+        self.failures = 0
+        self.retry = None
+
+    def tap_overlay(self, name):
+        """What dffdepth can tell beside depth, unless the pipeline has a use for it already."""
+        if pad := free_pad(self.pipeline, name):
+            return self.tap(name, pad, pad.get_parent_element().get_parent())
+        if self.depth_element and not self.depth_element.get_static_pad(name):
+            if pad := self.depth_element.request_pad_simple(name):
+                self.tap(name, pad, self.depth_element.get_parent())
+        return None
+
+    def tap(self, name, pad, parent):
+        queue, sink = Gst.ElementFactory.make('queue'), Gst.ElementFactory.make('appsink')
+        queue.set_property('max-size-buffers', 4)
+        queue.set_property('max-size-bytes', 0)
+        queue.set_property('max-size-time', 0)
+        sink.set_property('max-buffers', 1)
+        sink.set_property('emit-signals', True)
+        sink.connect('new-sample', self.take_sample, name)
+        parent.add(queue)
+        parent.add(sink)
+        queue.link(sink)
+        if pad.link(queue.get_static_pad('sink')) != Gst.PadLinkReturn.OK:
+            raise Unusable(f'The output {name} of the source pipeline cannot be linked')
+        self.sinks[name] = sink
+
+    def take_sample(self, sink, name):
+        sample = sink.emit('pull-sample')
+        if sample is None:
+            return Gst.FlowReturn.EOS
+        self.delivered = True
+        age = None
+        segment, pts = sample.get_segment(), sample.get_buffer().pts
+        if segment.format == Gst.Format.TIME and pts != Gst.CLOCK_TIME_NONE:
+            running = segment.to_running_time(Gst.Format.TIME, pts)
+            now = self.pipeline.get_pipeline_clock().get_time() - self.pipeline.get_base_time()
+            if running != Gst.CLOCK_TIME_NONE:
+                age = (now - running) / Gst.SECOND
+        self.on_sample(name, sample, age)
+        return Gst.FlowReturn.OK
+
+    def want(self, wanted):
+        if wanted != self.wanted:
+            self.wanted = wanted
+            self.forget_retry()
+            self.failures = 0
+            self.worker.submit(self.start if wanted else self.stop)
+
+    def start(self):
+        self.failed = self.delivered = False
+        live = self.pipeline.set_state(Gst.State.PAUSED) == Gst.StateChangeReturn.NO_PREROLL
+        for sink in self.sinks.values():
+            sink.set_property('sync', not live)  # what is not live is slowed down to its rate
+        if self.pipeline.set_state(Gst.State.PLAYING) == Gst.StateChangeReturn.FAILURE:
+            GLib.idle_add(self.fail, 'It does not start')
+        else:
+            GLib.idle_add(self.on_state, '')
+
+    def stop(self):
+        self.pipeline.set_state(Gst.State.NULL)
+
+    def restart_with(self, change):
+        """Stops, calls `change`, and goes on where it was wanted."""
+        def work():
+            self.pipeline.set_state(Gst.State.NULL)
+            change()
+            if self.wanted:
+                self.start()
+        self.forget_retry()
+        self.worker.submit(work)
+
+    def take_message(self, _, message):
+        if message.type == Gst.MessageType.ERROR:
+            error, details = message.parse_error()
+            log.debug('%s', details)
+            self.fail(error.message)
+        elif message.type == Gst.MessageType.EOS:
+            self.fail('It came to its end')
+        elif message.type == Gst.MessageType.WARNING:
+            log.warning('%s', message.parse_warning()[0].message)
+        elif message.type == Gst.MessageType.LATENCY:
+            self.worker.submit(self.pipeline.recalculate_latency)
+
+    def fail(self, reason):
+        """Once a run: an element that fails takes others with it."""
+        if self.failed or not self.wanted:
+            return
+        self.failed = True
+        self.failures = 0 if self.delivered else self.failures
+        wait = WAITS[min(self.failures, len(WAITS) - 1)]
+        self.failures += 1
+        text = f'The source stopped: {reason}. It is started again in {wait} s'
+        log.warning('%s', text)
+        self.on_state(text)
+        self.worker.submit(self.stop)
+        self.retry = GLib.timeout_add(int(wait * 1000), self.try_again)
+
+    def try_again(self):
+        self.retry = None
+        self.worker.submit(self.start)
+        return GLib.SOURCE_REMOVE
+
+    def forget_retry(self):
+        if self.retry:
+            GLib.source_remove(self.retry)
+            self.retry = None
+
+    def end(self):
+        self.wanted = False
+        self.forget_retry()
+        self.worker.submit(self.stop)
+        self.worker.shutdown()

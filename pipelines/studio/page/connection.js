@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 the gst-plugins-dff authors
+// The web socket to the server and the video that is agreed on over it. Comes back by itself.
+
+const FIRST_WAIT = 500, LONGEST_WAIT = 5000; // milliseconds before the next try
+const HERE = 30000; // milliseconds between two signs of life
+const PATIENCE = 6000; // milliseconds that a broken video may take to mend itself
+
+export class Connection extends EventTarget {
+  // `videos`: the elements for picture and depth, in the order of the tracks.
+  constructor(videos) {
+    super();
+    this.videos = videos;
+    this.wait = FIRST_WAIT;
+    this.open();
+    setInterval(() => this.send({ type: 'here' }), HERE);
+  }
+
+  open() {
+    this.socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`);
+    this.socket.onopen = () => {
+      this.wait = FIRST_WAIT;
+      this.send({ type: 'watch' });
+      this.tell('open', {});
+    };
+    this.socket.onmessage = event => {
+      const message = JSON.parse(event.data);
+      if (message.type === 'offer') this.answer(message.sdp).catch(problem => this.tell('problem', { text: `No video: ${problem.message}` }));
+      else if (message.type === 'candidate') this.add(message);
+      else this.tell(message.type, message);
+    };
+    this.socket.onclose = event => {
+      this.leave();
+      this.tell('closed', { text: event.reason });
+      setTimeout(() => this.open(), this.wait);
+      this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+    };
+  }
+
+  tell(type, detail) {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  async answer(sdp) {
+    this.leave();
+    const peer = this.peer = new RTCPeerConnection({ iceServers: [] });
+    this.early = [];
+    peer.ontrack = event => {
+      const video = this.videos[peer.getTransceivers().indexOf(event.transceiver)];
+      if (!video) return;
+      if ('jitterBufferTarget' in event.receiver) event.receiver.jitterBufferTarget = 0;
+      video.srcObject = new MediaStream([event.track]);
+      video.play().catch(() => {}); // a page in the background may not play yet; it will when it is looked at
+    };
+    peer.onicecandidate = event => {
+      // Names of mDNS cannot be looked up everywhere; the server learns the address behind them from the first packet.
+      if (event.candidate?.candidate && !event.candidate.candidate.includes('.local'))
+        this.send({ type: 'candidate', line: event.candidate.sdpMLineIndex, candidate: event.candidate.candidate });
+    };
+    peer.onconnectionstatechange = () => {
+      clearTimeout(this.broken);
+      if (peer.connectionState === 'failed') this.send({ type: 'watch' });
+      if (peer.connectionState === 'disconnected') this.broken = setTimeout(() => this.send({ type: 'watch' }), PATIENCE);
+    };
+    await peer.setRemoteDescription({ type: 'offer', sdp });
+    await peer.setLocalDescription(await peer.createAnswer());
+    this.send({ type: 'answer', sdp: peer.localDescription.sdp });
+    for (const candidate of this.early) await peer.addIceCandidate(candidate);
+    this.early = null;
+  }
+
+  add({ line, candidate }) {
+    if (this.early) this.early.push({ sdpMLineIndex: line, candidate });
+    else this.peer?.addIceCandidate({ sdpMLineIndex: line, candidate }).catch(() => {}); // of a video that is left already
+  }
+
+  leave() {
+    clearTimeout(this.broken);
+    this.peer?.close();
+    this.peer = null;
+  }
+}
