@@ -210,7 +210,7 @@ void MuxCore::begin(MuxInput &input, GstEvent *stream_start)
     const std::lock_guard lock(stream_);
     if (!input.plane) {
         finish(&input);
-        output_.push_event(stream_start);
+        output_.begin_stream(stream_start);
     } else {
         gst_event_unref(stream_start);
         if (!stream_begun_ || ended_) {

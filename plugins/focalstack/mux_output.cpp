@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/mux_output.h"
 
+#include "common/stream_start.h"
+
 GST_DEBUG_CATEGORY_EXTERN(focalstackmux_debug);
 #define GST_CAT_DEFAULT focalstackmux_debug
 
@@ -23,10 +25,16 @@ void MuxOutput::resume()
     discont_ = true;
 }
 
+void MuxOutput::begin_stream(GstEvent *stream_start)
+{
+    push_stream_start(source_, stream_start);
+    segment_due_ = true;
+}
+
 void MuxOutput::begin_own_stream()
 {
     g_autofree gchar *id = g_strdup_printf("%s-%08x", GST_ELEMENT_NAME(element_), g_random_int());
-    gst_pad_push_event(source_, gst_event_new_stream_start(id));
+    begin_stream(gst_event_new_stream_start(id));
 }
 
 void MuxOutput::set_segment(const GstSegment &segment, guint32 seqnum)

@@ -21,10 +21,12 @@ public:
     /* Downstream was flushed, and the same stream goes on. */
     void resume();
 
-    /* The mux's pads have no common stream: it has one of its own. */
+    /* Begins as the only input did, by its event, which is taken over; or, where the pads have no common
+     * stream, with one of the mux's own. */
+    void begin_stream(GstEvent *stream_start);
     void begin_own_stream();
 
-    /* What an input's stream began with, or the whole stream ends with; taken over. */
+    /* A flush; taken over. */
     bool push_event(GstEvent *event) { return gst_pad_push_event(source_, event); }
 
     /* `seqnum` is that of its event. */

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "../common/complaints.h"
+
 #include <gst/check/gstharness.h>
 #include <gst/dff/dff.h>
 

@@ -32,6 +32,17 @@ GstCaps *stack_caps(GstHarness *harness)
     return gst_pad_get_current_caps(harness->sinkpad);
 }
 
+/* Events that came out since last asked. */
+std::vector<GstEventType> events_of(GstHarness *harness)
+{
+    std::vector<GstEventType> types;
+    while (GstEvent *event = gst_harness_try_pull_event(harness)) {
+        types.push_back(GST_EVENT_TYPE(event));
+        gst_event_unref(event);
+    }
+    return types;
+}
+
 } // namespace
 
 class EveryFormat : public testing::TestWithParam<const char *> {};
@@ -375,10 +386,29 @@ TEST(MuxStream, a_stream_without_a_stack_has_a_segment_before_its_end)
     const auto harness = new_mux("focalstackmux");
     gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
     gst_harness_push_event(harness.get(), gst_event_new_eos());
-    std::vector<GstEventType> types;
-    while (GstEvent *event = gst_harness_try_pull_event(harness.get())) {
-        types.push_back(GST_EVENT_TYPE(event));
-        gst_event_unref(event);
-    }
-    EXPECT_EQ(types, (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+    EXPECT_EQ(events_of(harness.get()),
+              (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+}
+
+/* The segment before the end came without caps: caps must not come behind it. */
+TEST(MuxStream, a_stream_without_a_stack_may_be_followed_by_one_with_stacks)
+{
+    const Complaints complaints;
+    const GstVideoInfo info = video_info("GRAY8", 32, 16);
+    const auto harness = new_mux();
+    gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
+    gst_harness_push_event(harness.get(), gst_event_new_eos());
+    events_of(harness.get());
+
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(harness.get(), gst_event_new_stream_start("anew"));
+    g_autoptr(GstCaps) caps = gst_caps_from_string(frame_caps("GRAY8", 32, 16).c_str());
+    gst_harness_push_event(harness.get(), gst_event_new_caps(caps));
+    gst_harness_push_event(harness.get(), gst_event_new_segment(&segment));
+    push_sweep(harness.get(), info, 0);
+    EXPECT_EQ(gst_harness_buffers_in_queue(harness.get()), 1u);
+    EXPECT_EQ(events_of(harness.get()),
+              (std::vector{GST_EVENT_FLUSH_START, GST_EVENT_FLUSH_STOP, GST_EVENT_STREAM_START,
+                           GST_EVENT_CAPS, GST_EVENT_SEGMENT}));
 }
