@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depth_output.h"
 
+#include "common/stream_start.h"
+
 GST_DEBUG_CATEGORY_EXTERN(dff_depth_debug);
 #define GST_CAT_DEFAULT dff_depth_debug
 
@@ -33,7 +35,7 @@ void DepthOutput::open()
     upstream = gst_pad_get_sticky_event(sink, GST_EVENT_STREAM_START, 0);
     if (upstream && gst_event_parse_group_id(upstream, &group))
         gst_event_set_group_id(event, group);
-    gst_pad_push_event(pad_, event);
+    push_stream_start(pad_, event);
 }
 
 void DepthOutput::restart()

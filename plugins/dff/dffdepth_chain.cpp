@@ -49,7 +49,8 @@ static void look_for_peaks(GstDffDepth *self, const dff::StackShape &shape,
         GST_ELEMENT_WARNING(
             self, STREAM, FAILED,
             ("All planes are equally sharp, everywhere in the picture: the depth says nothing. Look whether "
-             "the lens moves, and whether each frame is of the plane it is said to be"),
+             "the lens moves, whether the picture shows anything, and whether each frame is of the plane it "
+             "is said to be"),
             (nullptr));
 }
 
@@ -66,7 +67,7 @@ static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *st
             outputs.confidence = {state.peaks.room(size_t{view.shape.width} * view.shape.height).data(),
                                   view.shape.width};
         const bool known = state.depth.compute(view, outputs);
-        if (is_due && known)
+        if (is_due)
             look_for_peaks(self, view.shape, outputs.confidence);
         return known;
     } catch (const dff::EngineError &error) {

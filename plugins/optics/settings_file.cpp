@@ -142,6 +142,8 @@ std::string FileEntries::File::read() const
     std::string text(error ? 0 : size, '\0');
     if (error || !stream.read(text.data(), static_cast<std::streamsize>(text.size())))
         fail("it cannot be read");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        fail("it is empty");
     if (!is_text(text))
         fail("it has other characters than those of a text");
     if (text.starts_with(byte_order_mark))

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -68,9 +69,16 @@ std::vector<float> sorted_known(const cv::Mat1f &disparity)
     return values;
 }
 
+/* Empty if it cannot be read. A pipe is not opened: until somebody writes into it nothing would come back. */
+cv::Mat read_picture(const std::string &path, cv::ImreadModes mode)
+{
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error) ? cv::imread(path, mode) : cv::Mat();
+}
+
 cv::Mat1f read_disparity(const std::string &path)
 {
-    const cv::Mat map = cv::imread(path, cv::IMREAD_UNCHANGED);
+    const cv::Mat map = read_picture(path, cv::IMREAD_UNCHANGED);
     if (map.empty())
         throw std::runtime_error("the depth map \"" + path +
                                  "\" cannot be read; depth-map must be the path of a PNG or TIFF file");
@@ -84,7 +92,7 @@ cv::Mat1f read_disparity(const std::string &path)
 
 cv::Mat3b read_image(const std::string &path)
 {
-    const cv::Mat3b image = cv::imread(path, cv::IMREAD_COLOR);
+    const cv::Mat3b image = read_picture(path, cv::IMREAD_COLOR);
     if (image.empty())
         throw std::runtime_error("the image \"" + path +
                                  "\" cannot be read; image must be the path of a PNG, JPEG or TIFF file");

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "../common/complaints.h"
 #include "test_pipeline.h"
 
 #include <gst/check/gstharness.h>
@@ -114,19 +115,54 @@ TEST(DffDepthOutputs, nothing_linked_says_so)
     EXPECT_FALSE(run("lenssweeptestsrc num-buffers=12 ! focalstackmux ! dffdepth").error.empty());
 }
 
-/* Aggregators number their end by the segment. */
-TEST(DffDepthOutputs, a_stream_without_a_stack_has_a_segment_before_its_end)
+namespace {
+
+constexpr const char *two_planes = "video/x-focal-stack,format=GRAY8,width=64,height=64,planes=2,"
+                                   "framerate=26/1";
+
+/* Events that came out since last asked. */
+std::vector<GstEventType> events_of(GstHarness *harness)
 {
-    gst_init(nullptr, nullptr);
-    GstHarness *harness = gst_harness_new("dffdepth");
-    gst_harness_set_src_caps_str(harness, "video/x-focal-stack,format=GRAY8,width=64,height=64,planes=2,"
-                                          "framerate=26/1");
-    gst_harness_push_event(harness, gst_event_new_eos());
     std::vector<GstEventType> types;
     while (GstEvent *event = gst_harness_try_pull_event(harness)) {
         types.push_back(GST_EVENT_TYPE(event));
         gst_event_unref(event);
     }
-    EXPECT_EQ(types, (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+    return types;
+}
+
+} // namespace
+
+/* Aggregators number their end by the segment. */
+TEST(DffDepthOutputs, a_stream_without_a_stack_has_a_segment_before_its_end)
+{
+    gst_init(nullptr, nullptr);
+    GstHarness *harness = gst_harness_new("dffdepth");
+    gst_harness_set_src_caps_str(harness, two_planes);
+    gst_harness_push_event(harness, gst_event_new_eos());
+    EXPECT_EQ(events_of(harness), (std::vector{GST_EVENT_STREAM_START, GST_EVENT_SEGMENT, GST_EVENT_EOS}));
+    gst_harness_teardown(harness);
+}
+
+/* The segment before the end came without caps: caps must not come behind it. */
+TEST(DffDepthOutputs, a_stream_without_a_stack_may_be_followed_by_one_with_stacks)
+{
+    gst_init(nullptr, nullptr);
+    const Complaints complaints;
+    GstHarness *harness = gst_harness_new("dffdepth");
+    gst_harness_set_src_caps_str(harness, two_planes);
+    gst_harness_push_event(harness, gst_event_new_eos());
+    events_of(harness);
+
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    g_autoptr(GstCaps) caps = gst_caps_from_string(two_planes);
+    gst_harness_push_event(harness, gst_event_new_stream_start("anew"));
+    gst_harness_push_event(harness, gst_event_new_caps(caps));
+    gst_harness_push_event(harness, gst_event_new_segment(&segment));
+    EXPECT_EQ(gst_harness_push(harness, gst_harness_create_buffer(harness, 2 * 64 * 64)), GST_FLOW_OK);
+    EXPECT_EQ(gst_harness_buffers_in_queue(harness), 1u);
+    EXPECT_EQ(events_of(harness), (std::vector{GST_EVENT_FLUSH_START, GST_EVENT_FLUSH_STOP,
+                                               GST_EVENT_STREAM_START, GST_EVENT_CAPS, GST_EVENT_SEGMENT}));
     gst_harness_teardown(harness);
 }

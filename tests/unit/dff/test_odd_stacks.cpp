@@ -288,6 +288,22 @@ TEST_F(OddStacks, a_lens_that_never_moved_is_told_once)
     EXPECT_NE(warnings_.front().find("the lens moves"), std::string::npos) << warnings_.front();
 }
 
+/* Without noise either no pixel has any depth. */
+TEST_F(OddStacks, planes_that_are_the_same_are_told_once)
+{
+    start("dffdepth unit=index");
+    std::vector<guint8> bytes = gray_stack(width, height, planes, 0);
+    for (unsigned z = 1; z < planes; z++)
+        std::copy_n(bytes.begin(), width * height, bytes.begin() + z * width * height);
+    for (unsigned k = 0; k < 40; k++) {
+        ASSERT_EQ(push(gst_buffer_new_memdup(bytes.data(), bytes.size())), GST_FLOW_OK);
+        pull();
+    }
+    look();
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_.front().find("the lens moves"), std::string::npos) << warnings_.front();
+}
+
 TEST_F(OddStacks, a_lens_that_moved_is_not_spoken_of)
 {
     for (const char *element : {"dffdepth", "dffdepth method=paper"}) {

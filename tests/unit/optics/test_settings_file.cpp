@@ -134,7 +134,9 @@ TEST(SettingsFile, what_is_no_such_file_is_told_at_once)
                   "it has other characters than those of a text");
 
     const std::string unknown = "it is neither YAML (with a first line %YAML:1.0) nor JSON nor XML";
-    for (const char *const text : {"", "a: 1\n", "\x8b\x88", "%YAML:1.0\n---\na: [",
+    for (const char *const text : {"", "\n", " \r\n\t"})
+        EXPECT_EQ(fault_of_path(TextFile(text).path), "it is empty");
+    for (const char *const text : {"a: 1\n", "\x8b\x88", "%YAML:1.0\n---\na: [",
                                    "%YAML:1.0\n---\na:\n   -\n      dx: 3.0\n      :\n", "{\"a\": 1"})
         EXPECT_EQ(fault_of_path(TextFile(text).path).substr(0, unknown.size()), unknown) << text;
     EXPECT_EQ(fault_of_path(TextFile("[ 1, 2 ]").path).substr(0, unknown.size()), unknown);

@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <sys/stat.h>
 #include <unistd.h>
 
 using dff::Scene;
@@ -110,6 +111,15 @@ TEST_F(SceneFiles, another_size_keeps_depths_apart)
     EXPECT_EQ(large.size(), cv::Size(47, 33));
     EXPECT_EQ(large.known.size(), large.size());
     EXPECT_EQ(cv::countNonZero(large.depth == 0.0F) + cv::countNonZero(large.depth == 1.0F), 47 * 33);
+}
+
+TEST_F(SceneFiles, a_pipe_that_nobody_writes_into_is_refused_at_once)
+{
+    const std::string image = write("i.png", cv::Mat3b(4, 6));
+    const std::string pipe = path("pipe.png");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(message_of([&] { dff::image_size(pipe); }).find("cannot be read"), std::string::npos);
+    EXPECT_NE(message_of([&] { dff::load_scene(image, pipe); }).find("cannot be read"), std::string::npos);
 }
 
 TEST_F(SceneFiles, bad_files_are_named_with_what_to_do)
