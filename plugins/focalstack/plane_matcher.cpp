@@ -34,8 +34,13 @@ constexpr double min_inlier_share = 0.4;
 
 /* No hand and no lens does more between two planes. */
 constexpr double max_zoom = 0.15;
-constexpr double max_rotation = 0.1; /* radians */
+constexpr double max_rotation = 0.3; /* radians */
 constexpr double max_shift = 0.2;    /* of the longer side */
+
+/* Radians. Phases and patches bear turns of half of this step; larger ones are looked for in multiples
+ * of it. */
+constexpr double turn_step = 0.07;
+constexpr int most_turns = 4;
 
 /* R/4 + G/2 + B/4, which does not ask which end red is at. */
 cv::Mat luma_of(const cv::Mat &picture)
@@ -86,16 +91,42 @@ std::vector<cv::Point2f> find_corners_at_half_size(const cv::Mat &picture)
     return corners;
 }
 
-/* By the phases of their spectra. */
-PlaneWarp common_shift(const MatchablePlane &from, const MatchablePlane &to)
+/* By the phases of the spectra of two bands; `response` is the larger the better they fit. */
+PlaneWarp common_shift(const cv::Mat &from, const cv::Mat &to, double *response = nullptr)
 {
     cv::Mat a, b, window_function;
-    from.band().convertTo(a, CV_32F, 1.0, -128.0);
-    to.band().convertTo(b, CV_32F, 1.0, -128.0);
+    from.convertTo(a, CV_32F, 1.0, -128.0);
+    to.convertTo(b, CV_32F, 1.0, -128.0);
     cv::createHanningWindow(window_function, a.size(), CV_32F);
 
-    const cv::Point2d shift = cv::phaseCorrelate(a, b, window_function);
+    const cv::Point2d shift = cv::phaseCorrelate(a, b, window_function, response);
     return {1.0, 0.0, shift.x, shift.y};
+}
+
+cv::Mat turned(const cv::Mat &band, double angle)
+{
+    const PlaneWarp turn(std::cos(angle), std::sin(angle), 0.0, 0.0);
+    cv::Mat result;
+
+    cv::warpPerspective(band, result, turn.pixel_matrix(band.size()), band.size(), cv::INTER_LINEAR,
+                        cv::BORDER_CONSTANT, cv::Scalar::all(128));
+    return result;
+}
+
+/* The turn after which the phases of `from` fit best to those of `to`. */
+double best_turn(const MatchablePlane &from, const MatchablePlane &to)
+{
+    double best = 0.0, best_response = 0.0;
+
+    for (int i = -most_turns; i <= most_turns; i++) {
+        double response = 0.0;
+        common_shift(turned(from.band(), i * turn_step), to.band(), &response);
+        if (response > best_response) {
+            best_response = response;
+            best = i * turn_step;
+        }
+    }
+    return best;
 }
 
 bool is_plausible(const PlaneWarp &warp, cv::Size size)
@@ -140,8 +171,19 @@ cv::Mat reduced_luma(const cv::Mat &picture, int side)
 
 MatchablePlane::MatchablePlane(const cv::Mat &luma)
 {
-    const cv::Mat band = normalised_band(luma);
+    prepare(normalised_band(luma));
+}
 
+MatchablePlane MatchablePlane::turned_by(double angle) const
+{
+    MatchablePlane result;
+
+    result.prepare(turned(band(), angle));
+    return result;
+}
+
+void MatchablePlane::prepare(const cv::Mat &band)
+{
     cv::buildOpticalFlowPyramid(band, pyramid_, window, pyramid_levels);
     corners_ =
         std::max(band.cols, band.rows) > detail_side ? find_corners_at_half_size(band) : find_corners(band);
@@ -175,24 +217,65 @@ PlaneMatch follow_corners(const MatchablePlane &from, const MatchablePlane &to, 
     return match;
 }
 
+namespace {
+
+/* What follows the corners of `from` as from `guess` finds, if no other shift explains `to` better. Otherwise
+ * `guess` becomes that one. */
+std::optional<PlaneWarp> motion_near(const MatchablePlane &from, const MatchablePlane &to, PlaneWarp &guess,
+                                     bool close, PlaneMatch &match)
+{
+    match = follow_corners(from, to, guess, close);
+    const std::optional<PlaneWarp> motion = common_motion(match, from.size());
+    if (!motion)
+        return {};
+    const ShiftRival rival = strongest_rival(from.band(), to.band(), *motion);
+    if (!rival.wins(*motion, from.size()))
+        return motion;
+    guess = PlaneWarp(motion->matrix() * PlaneWarp(1.0, 0.0, rival.shift.x, rival.shift.y).matrix());
+    return {};
+}
+
+/* The same if `from` was turned by more than patches bear. */
+std::optional<PlaneWarp> turned_motion(const MatchablePlane &from, const MatchablePlane &to,
+                                       PlaneMatch &match)
+{
+    const double angle = best_turn(from, to);
+    if (angle == 0.0)
+        return {};
+
+    const MatchablePlane turned_from = from.turned_by(angle);
+    const PlaneWarp turn(std::cos(angle), std::sin(angle), 0.0, 0.0);
+    PlaneWarp guess = common_shift(turned_from.band(), to.band());
+    const std::optional<PlaneWarp> motion = motion_near(turned_from, to, guess, false, match);
+    if (!motion)
+        return {};
+    for (cv::Point2d &point : match.from)
+        point = turn.inverse().apply(point);
+    const PlaneWarp whole(motion->matrix() * turn.matrix());
+    return is_plausible(whole, from.size()) ? std::optional(whole) : std::nullopt;
+}
+
+} // namespace
+
 std::optional<PlaneWarp> find_motion(const MatchablePlane &from, const MatchablePlane &to, PlaneMatch &match)
 {
-    PlaneWarp guess = common_shift(from, to);
+    if (from.corners().size() < min_matches)
+        return {};
+    const PlaneWarp shift = common_shift(from.band(), to.band());
+    PlaneWarp guess = shift;
 
+    if (const std::optional<PlaneWarp> motion = motion_near(from, to, guess, false, match))
+        return motion;
     /* Where a rival wins, it is worth one look of its own. A pattern that repeats confuses phases and
      * pyramids alike: then standing still is worth one too. */
-    for (int attempt = 0; attempt < 3; attempt++) {
-        const bool still = attempt == 2;
-        match = follow_corners(from, to, still ? PlaneWarp() : guess, still);
-        const std::optional<PlaneWarp> motion = common_motion(match, from.size());
-        if (!motion)
-            continue;
-        const ShiftRival rival = strongest_rival(from.band(), to.band(), *motion);
-        if (!rival.wins(*motion, from.size()))
+    if (guess.shift() != shift.shift()) {
+        if (const std::optional<PlaneWarp> motion = motion_near(from, to, guess, false, match))
             return motion;
-        guess = PlaneWarp(motion->matrix() * PlaneWarp(1.0, 0.0, rival.shift.x, rival.shift.y).matrix());
     }
-    return {};
+    PlaneWarp still;
+    if (const std::optional<PlaneWarp> motion = motion_near(from, to, still, true, match))
+        return motion;
+    return turned_motion(from, to, match);
 }
 
 } // namespace dff

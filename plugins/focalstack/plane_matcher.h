@@ -26,10 +26,17 @@ public:
     const cv::Mat &band() const { return pyramid_.front(); }
     const std::vector<cv::Mat> &pyramid() const { return pyramid_; }
 
+    /* The same plane after a turn about its centre, in radians as PlaneWarp's; grey where it shows nothing.
+     */
+    MatchablePlane turned_by(double angle) const;
+
     /* Points worth looking for in another plane; none where there is no texture. */
     const std::vector<cv::Point2f> &corners() const { return corners_; }
 
 private:
+    MatchablePlane() = default;
+    void prepare(const cv::Mat &band);
+
     std::vector<cv::Mat> pyramid_;
     std::vector<cv::Point2f> corners_;
 };
@@ -50,9 +57,10 @@ PlaneMatch follow_corners(const MatchablePlane &from, const MatchablePlane &to, 
                           bool close);
 
 /* How the picture of `from` is shifted, turned and zoomed in `to`, from nothing known: the shift is read from
- * the phases of the spectra, and the rest is what most corners that are followed from there agree on
- * (RANSAC). Nothing if too few agree, if no hand and no lens does the like, or if another shift explains `to`
- * better, as happens on patterns that repeat. `match` gets all corners that were followed. */
+ * the phases of the spectra, as is, where that leads nowhere, a turn of up to 16 degrees; the rest is what
+ * most corners that are followed from there agree on (RANSAC). Nothing if too few agree, if no hand and no
+ * lens does the like, or if another shift explains `to` better, as happens on patterns that repeat. `match`
+ * gets all corners that were followed. */
 std::optional<PlaneWarp> find_motion(const MatchablePlane &from, const MatchablePlane &to, PlaneMatch &match);
 
 } // namespace dff

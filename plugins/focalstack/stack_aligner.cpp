@@ -32,7 +32,8 @@ constexpr double share_left = 0.8;
 class StackMatcher {
 public:
     explicit StackMatcher(std::span<const cv::Mat> planes)
-        : size_(planes.front().size()), middle_(middle_plane(planes.size())), warps_(planes.size())
+        : size_(planes.front().size()), middle_(middle_plane(planes.size())), reached_(planes.size(), false),
+          warps_(planes.size())
     {
         for (const cv::Mat &plane : planes)
             lumas_.push_back(reduced_luma(plane, sides.back()));
@@ -66,6 +67,7 @@ private:
     std::size_t middle_;
     std::vector<cv::Mat> lumas_;
     std::vector<bool> blank_;
+    std::vector<bool> reached_; /* from the middle plane, by steps */
 
     /* How planes that were matched from nothing lie to each other: `warp` brings `from` onto `to`. */
     struct Step {
@@ -130,30 +132,33 @@ void StackMatcher::match_neighbours(const Level &level)
     }
 }
 
-/* A first guess of all warps, step by step from the middle. */
+/* A first guess of all warps, step by step from the middle. Links between planes that no step reaches say
+ * nothing of where these lie, and would be satisfied best if all shrank to a point. */
 void StackMatcher::spread_from_middle()
 {
-    std::vector<bool> known(warps_.size(), false);
     bool grown = true;
 
-    known[middle_] = true;
+    reached_[middle_] = true;
     while (grown) {
         grown = false;
         for (const Step &step : steps_) {
-            if (known[step.from] == known[step.to])
+            if (reached_[step.from] == reached_[step.to])
                 continue;
-            if (known[step.from])
+            if (reached_[step.from])
                 warps_[step.to] = PlaneWarp(warps_[step.from].matrix() * step.warp.matrix().inv());
             else
                 warps_[step.from] = PlaneWarp(warps_[step.to].matrix() * step.warp.matrix());
-            known[step.from] = known[step.to] = grown = true;
+            reached_[step.from] = reached_[step.to] = grown = true;
         }
     }
+    std::erase_if(links_, [&](const PlaneLink &link) { return !reached_[link.from]; });
 }
 
 void StackMatcher::match_along(const Level &level, std::size_t distance)
 {
     for (std::size_t z = 0; z + distance < warps_.size(); z++) {
+        if (!reached_[z] || !reached_[z + distance])
+            continue;
         if (level.pixel < links_.front().pixel ? !is_worth_a_larger_size(z, z + distance)
                                                : is_known(z, z + distance))
             continue;

@@ -15,8 +15,9 @@ constexpr std::array least_spreads{1.0, 0.5, 0.25, 0.12, 0.07, 0.07};
 constexpr double finest_spread = least_spreads.back();
 
 /* Of a tie between neighbours at each corner: enough to decide where no point does, too little to be felt
- * elsewhere. */
-constexpr double tie_weight = 1e-3;
+ * elsewhere, even where a hand moved neighbours by a tenth of the picture and all links are of the smallest
+ * size: there a point counts for some thousandths of what it may. */
+constexpr double tie_weight = 1e-7;
 
 /* A warp has up to eight numbers: similarities are [a -b c; b a d], homographies [a b c; d e f; g h 1]. */
 constexpr int most_numbers = 8;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/stack_aligner.h"
+#include "focalstack/warp_solver.h"
 
 #include "shaken_stack.h"
 
@@ -206,6 +207,32 @@ TEST(StackAligner, a_hand_shakes_planes_far_apart_in_focus)
               0.3);
 }
 
+/* As the smallest size tells them, beside links of a larger size: each counts for little. */
+TEST(WarpSolver, few_points_outweigh_the_tie_to_the_neighbour)
+{
+    const cv::Point2d shift(40.0, -20.0);
+    cv::RNG random(5);
+    std::vector<dff::PlaneLink> links{{0, 1, {}, 2.8}, {1, 2, {}, 1.0}};
+    for (int i = 0; i < 24; i++) {
+        const cv::Point2d point(random.uniform(-80.0, 80.0), random.uniform(-80.0, 80.0));
+        const cv::Point2d error(random.gaussian(1.0), random.gaussian(1.0));
+        links[0].match.from.push_back(point);
+        links[0].match.to.push_back(point + shift + error);
+        links[1].match.from.push_back(point);
+        links[1].match.to.push_back(point);
+    }
+    const std::vector<dff::PlaneWarp> start{{1.0, 0.0, shift.x, shift.y}, {}, {}};
+    const auto warps = dff::solve_warps(dff::MotionModel::Similarity, start, 1, links, {444, 444});
+
+    EXPECT_LT(cv::norm(warps[0].shift() - shift), 0.6);
+}
+
+TEST(StackAligner, a_picture_turned_by_fifteen_degrees_is_found)
+{
+    EXPECT_LT(residual_of(ShakenStack({.size = {400, 300}, .planes = 6, .jitter = 12.0, .rotation = 0.12})),
+              0.3);
+}
+
 TEST(StackAligner, a_phone_in_the_hand_needs_a_homography)
 {
     const ShakenStack stack({.planes = 6, .tilt = 0.02});
@@ -254,6 +281,21 @@ TEST(StackAligner, a_plane_of_another_scene_is_not_trusted)
     for (std::size_t z = 0; z < alignments.size(); z++) {
         EXPECT_EQ(alignments[z].trusted, z != 7) << "plane " << z;
         EXPECT_FALSE(alignments[z].blank);
+    }
+}
+
+/* They match each other, and that says nothing of where they belong. */
+TEST(StackAligner, planes_of_another_scene_go_with_the_neighbours)
+{
+    ShakenStack stack({.planes = 8, .breathing = 0.0, .jitter = 2.0});
+    for (std::size_t z = 0; z < 3; z++)
+        cv::flip(stack.planes[z], stack.planes[z], -1);
+    const auto alignments = dff::align_stack(stack.planes);
+
+    for (std::size_t z = 0; z < alignments.size(); z++) {
+        EXPECT_EQ(alignments[z].trusted, z >= 3) << "plane " << z;
+        EXPECT_NEAR(alignments[z].warp.scale(), 1.0, 0.01) << "plane " << z;
+        EXPECT_LT(alignments[z].warp.largest_shift(stack.size), 10.0) << "plane " << z;
     }
 }
 
