@@ -8,6 +8,7 @@ library ieee;
   use ieee.numeric_std.all;
 
 library work;
+  use work.sweep_types_pkg.all;
   use work.timing_pkg.all;
 
 entity lens_sweep_top is
@@ -60,34 +61,15 @@ architecture rtl of lens_sweep_top is
   signal lens_scl_low   : std_ulogic;
   signal lens_sda_low   : std_ulogic;
 
-  signal planes             : unsigned(6 downto 0);
-  signal triangle           : std_ulogic;
-  signal trigger_active_low : std_ulogic;
-  signal period             : unsigned(15 downto 0);
-  signal exposure           : unsigned(15 downto 0);
-  signal flyback            : unsigned(15 downto 0);
-  signal trigger_width      : unsigned(15 downto 0);
-  signal lead               : unsigned(7 downto 0);
-  signal opto_on            : unsigned(7 downto 0);
-  signal opto_off           : unsigned(7 downto 0);
-  signal lens_address       : std_ulogic_vector(6 downto 0);
-  signal lens_wake          : std_ulogic_vector(15 downto 0);
-  signal lens_stage         : std_ulogic_vector(15 downto 0);
-  signal lens_commit        : std_ulogic_vector(15 downto 0);
-
-  signal table_plane  : unsigned(5 downto 0);
-  signal table_column : unsigned(1 downto 0);
-  signal table_data   : std_ulogic_vector(15 downto 0);
-  signal table_read   : std_ulogic;
+  signal sweep      : sweep_words_t;
+  signal pulse      : pulse_words_t;
+  signal driver     : driver_words_t;
+  signal table      : row_request_t;
+  signal table_data : std_ulogic_vector(15 downto 0);
 
   signal go             : std_ulogic;
-  signal sequencer_busy : std_ulogic;
   signal idle           : std_ulogic;
-  signal plane          : unsigned(5 downto 0);
-  signal downward       : std_ulogic;
-  signal boundary       : std_ulogic;
-  signal fire           : std_ulogic;
-  signal fire_sync      : std_ulogic;
+  signal progress       : progress_t;
   signal trigger_active : std_ulogic;
   signal sync_active    : std_ulogic;
 
@@ -124,9 +106,9 @@ begin
         power_up_reset <= '0';
       end if;
       reset <= button or power_up_reset;
-      busy  <= sequencer_busy or trigger_active or sync_active;
+      busy  <= progress.busy or trigger_active or sync_active;
       error <= failed;
-      idle  <= not (sequencer_busy or trigger_active);
+      idle  <= not (progress.busy or trigger_active);
     end if;
 
   end process outputs;
@@ -215,40 +197,22 @@ begin
       TIMEOUT_S   => HOST_TIMEOUT_S
     )
     port map (
-      clk                => clk,
-      reset              => reset,
-      scl_in             => host_scl_level,
-      sda_in             => host_sda_level,
-      sda_low            => host_sda_low,
-      planes             => planes,
-      triangle           => triangle,
-      trigger_active_low => trigger_active_low,
-      period             => period,
-      exposure           => exposure,
-      flyback            => flyback,
-      trigger_width      => trigger_width,
-      lead               => lead,
-      opto_on            => opto_on,
-      opto_off           => opto_off,
-      lens_address       => lens_address,
-      lens_start         => lens_wake,
-      lens_stage         => lens_stage,
-      lens_commit        => lens_commit,
-      table_plane        => table_plane,
-      table_column       => table_column,
-      table_read         => table_read,
-      table_data         => table_data,
-      run                => run_level,
-      go                 => go,
-      busy               => sequencer_busy,
-      idle               => idle,
-      boundary           => boundary,
-      plane              => plane,
-      downward           => downward,
-      sweep_begun        => fire_sync,
-      frame_begun        => fire,
-      sweep_faults       => sweep_faults,
-      error              => failed
+      clk          => clk,
+      reset        => reset,
+      scl_in       => host_scl_level,
+      sda_in       => host_sda_level,
+      sda_low      => host_sda_low,
+      sweep        => sweep,
+      pulse        => pulse,
+      driver       => driver,
+      table        => table,
+      table_data   => table_data,
+      run          => run_level,
+      go           => go,
+      idle         => idle,
+      progress     => progress,
+      sweep_faults => sweep_faults,
+      error        => failed
     );
 
   sequencer : entity work.sweep_sequencer
@@ -257,34 +221,20 @@ begin
       TICK_HZ  => TICK_HZ
     )
     port map (
-      clk             => clk,
-      reset           => reset,
-      go              => go,
-      planes          => planes,
-      triangle        => triangle,
-      period          => period,
-      exposure        => exposure,
-      flyback         => flyback,
-      lead            => lead,
-      start_write     => lens_wake,
-      stage_registers => lens_stage,
-      commit_write    => lens_commit,
-      table_plane     => table_plane,
-      table_column    => table_column,
-      table_read      => table_read,
-      table_data      => table_data,
-      lens_start      => lens_start,
-      lens_register   => lens_register,
-      lens_value      => lens_value,
-      lens_done       => lens_done,
-      lens_fault      => lens_fault,
-      fire            => fire,
-      fire_sync       => fire_sync,
-      boundary        => boundary,
-      late            => late,
-      busy            => sequencer_busy,
-      plane           => plane,
-      downward        => downward
+      clk           => clk,
+      reset         => reset,
+      go            => go,
+      sweep         => sweep,
+      driver        => driver,
+      table         => table,
+      table_data    => table_data,
+      lens_start    => lens_start,
+      lens_register => lens_register,
+      lens_value    => lens_value,
+      lens_done     => lens_done,
+      lens_fault    => lens_fault,
+      progress      => progress,
+      late          => late
     );
 
   lens : entity work.i2c_master
@@ -298,7 +248,7 @@ begin
       clk              => clk,
       reset            => reset,
       start            => lens_start,
-      address          => lens_address,
+      address          => driver.address,
       register_number  => lens_register,
       value            => lens_value,
       busy             => open,
@@ -321,11 +271,11 @@ begin
     port map (
       clk        => clk,
       reset      => reset,
-      fire       => fire,
-      active_low => trigger_active_low,
-      width      => trigger_width,
-      opto_on    => opto_on,
-      opto_off   => opto_off,
+      fire       => progress.fire,
+      active_low => pulse.active_low,
+      width      => pulse.width,
+      opto_on    => pulse.opto_on,
+      opto_off   => pulse.opto_off,
       active     => trigger_active,
       pin        => trigger
     );
@@ -338,9 +288,9 @@ begin
     port map (
       clk        => clk,
       reset      => reset,
-      fire       => fire_sync,
+      fire       => progress.fire_sync,
       active_low => '0',
-      width      => trigger_width,
+      width      => pulse.width,
       opto_on    => (others => '0'),
       opto_off   => (others => '0'),
       active     => sync_active,

@@ -9,6 +9,7 @@ library ieee;
   use ieee.numeric_std.all;
 
 library work;
+  use work.sweep_types_pkg.all;
   use work.timing_pkg.all;
 
 entity plane_table is
@@ -20,37 +21,24 @@ entity plane_table is
   port (
     clk   : in    std_ulogic;
     reset : in    std_ulogic;
-    -- The staged table; host_q is valid one cycle after host_read
-    host_plane  : in    unsigned(5 downto 0);
-    host_column : in    unsigned(1 downto 0);
-    host_write  : in    std_ulogic;
-    host_data   : in    std_ulogic_vector(15 downto 0);
-    host_read   : in    std_ulogic;
-    host_q      : out   std_ulogic_vector(15 downto 0);
-    -- The committed words that the check needs, valid two cycles after commit
-    commit        : in    std_ulogic;
-    planes        : in    unsigned(15 downto 0);
-    period        : in    unsigned(15 downto 0);
-    exposure      : in    unsigned(15 downto 0);
-    trigger_width : in    unsigned(15 downto 0);
-    lead          : in    unsigned(7 downto 0);
-    trail         : in    unsigned(7 downto 0);
-    -- A new trigger polarity must not make an edge in a sweep: it waits for idle
-    new_level : in    std_ulogic;
-    pending   : out   std_ulogic;
+    -- The staged table; host_q is valid one cycle after a read
+    host   : in    row_access_t;
+    host_q : out   std_ulogic_vector(15 downto 0);
+    -- The committed words are valid two cycles after commit
+    commit  : in    std_ulogic;
+    checked : in    checked_words_t;
+    pending : out   std_ulogic;
     -- One cycle each
     apply      : out   std_ulogic;
     bad_planes : out   std_ulogic;
     bad_timing : out   std_ulogic;
     bad_code   : out   std_ulogic;
     bad_plane  : out   unsigned(5 downto 0);
-    -- Sequencer; q is valid one cycle after read
-    idle     : in    std_ulogic;
-    boundary : in    std_ulogic;
-    plane    : in    unsigned(5 downto 0);
-    column   : in    unsigned(1 downto 0);
-    read     : in    std_ulogic;
-    q        : out   std_ulogic_vector(15 downto 0)
+    -- Sequencer; table_data is valid one cycle after a read
+    idle       : in    std_ulogic;
+    boundary   : in    std_ulogic;
+    table      : in    row_request_t;
+    table_data : out   std_ulogic_vector(15 downto 0)
   );
 end entity plane_table;
 
@@ -93,13 +81,13 @@ architecture rtl of plane_table is
 
 begin
 
-  gap <= resize(period, 17) - resize(exposure, 17);
+  gap <= resize(checked.period, 17) - resize(checked.exposure, 17);
 
   copying        <= '1' when state = copy_state else
                     '0';
   staged_address <= to_integer(address) when copying = '1' else
-                    to_integer(host_plane & host_column);
-  staged_enable  <= copying or host_read;
+                    to_integer(host.plane & host.column);
+  staged_enable  <= copying or host.read;
 
   host_q <= host_word;
 
@@ -107,8 +95,8 @@ begin
   begin
 
     if rising_edge(clk) then
-      if (host_write = '1') then
-        staged(to_integer(host_plane & host_column)) <= host_data;
+      if (host.write = '1') then
+        staged(to_integer(host.plane & host.column)) <= host.data;
       end if;
       if (staged_enable = '1') then
         host_word <= staged(staged_address);
@@ -124,8 +112,8 @@ begin
       if (copied = '1') then
         banks(to_integer((not bank) & copied_address)) <= host_word;
       end if;
-      if (read = '1') then
-        q <= banks(to_integer(bank & plane & column));
+      if (table.read = '1') then
+        table_data <= banks(to_integer(bank & table.plane & table.column));
       end if;
     end if;
 
@@ -169,11 +157,12 @@ begin
           if (step = 4) then
             step  <= 0;
             state <= copy_state;
-            if (planes < 2 or planes > 64) then
+            if (checked.planes < 2 or checked.planes > 64) then
               refuse(bad_planes, to_unsigned(0, 6));
               state <= idle_state;
-            elsif (period <= exposure or exposure < LENS_STAGED or trigger_width = 0 or trigger_width > exposure
-                   or resize(trigger_width, 17) + lead <= trail) then
+            elsif (checked.period <= checked.exposure or checked.exposure < LENS_STAGED or checked.width = 0
+                   or checked.width > checked.exposure
+                   or resize(checked.width, 17) + checked.lead <= checked.trail) then
               refuse(bad_timing, to_unsigned(0, 6));
               state <= idle_state;
             end if;
@@ -183,7 +172,7 @@ begin
 
           copied_address <= address;
           address        <= address + 1;
-          if (address = shift_left(resize(planes, 9), 2) - 1) then
+          if (address = shift_left(resize(checked.planes, 9), 2) - 1) then
             state <= verdict_state;
           end if;
 
@@ -213,8 +202,8 @@ begin
           check(1)      <= '1';
           settled_plane <= copied_address(7 downto 2);
           settle        <= resize(unsigned(host_word), 18);
-          if (unsigned(host_word) < lead) then
-            settle <= resize(lead, 18);
+          if (unsigned(host_word) < checked.lead) then
+            settle <= resize(checked.lead, 18);
           end if;
         end if;
       end if;
@@ -226,7 +215,8 @@ begin
         refuse(bad_timing, checked_plane);
       end if;
 
-      if (pending = '1' and state = idle_state and (idle = '1' or (boundary = '1' and new_level = '0'))) then
+      -- A new polarity of the trigger is an edge: it waits for rest
+      if (pending = '1' and state = idle_state and (idle = '1' or (boundary = '1' and checked.new_level = '0'))) then
         pending <= '0';
         apply   <= '1';
         bank    <= not bank;

@@ -10,6 +10,7 @@ library ieee;
 
 library work;
   use work.sweep_registers_pkg.all;
+  use work.sweep_types_pkg.all;
   use work.timing_pkg.all;
 
 entity register_file is
@@ -29,47 +30,22 @@ entity register_file is
     write       : in    std_ulogic;
     write_data  : in    std_ulogic_vector(15 downto 0);
     -- Table of planes: the row shown to the host, and the commit
-    table_plane  : out   unsigned(5 downto 0);
-    table_column : out   unsigned(1 downto 0);
-    table_write  : out   std_ulogic;
-    table_data   : out   std_ulogic_vector(15 downto 0);
-    table_read   : out   std_ulogic;
-    -- One cycle after table_read
+    table : out   row_access_t;
+    -- One cycle after its read
     table_q : in    std_ulogic_vector(15 downto 0);
     commit  : out   std_ulogic;
     pending : in    std_ulogic;
     apply   : in    std_ulogic;
     -- Committed words, for the check
-    checked_planes    : out   unsigned(15 downto 0);
-    checked_period    : out   unsigned(15 downto 0);
-    checked_exposure  : out   unsigned(15 downto 0);
-    checked_width     : out   unsigned(15 downto 0);
-    checked_lead      : out   unsigned(7 downto 0);
-    checked_trail     : out   unsigned(7 downto 0);
-    checked_new_level : out   std_ulogic;
+    checked : out   checked_words_t;
     -- Words in use
-    planes             : out   unsigned(6 downto 0);
-    triangle           : out   std_ulogic;
-    trigger_active_low : out   std_ulogic;
-    period             : out   unsigned(15 downto 0);
-    exposure           : out   unsigned(15 downto 0);
-    flyback            : out   unsigned(15 downto 0);
-    trigger_width      : out   unsigned(15 downto 0);
-    lead               : out   unsigned(7 downto 0);
-    opto_on            : out   unsigned(7 downto 0);
-    opto_off           : out   unsigned(7 downto 0);
-    lens_address       : out   std_ulogic_vector(6 downto 0);
-    lens_start         : out   std_ulogic_vector(15 downto 0);
-    lens_stage         : out   std_ulogic_vector(15 downto 0);
-    lens_commit        : out   std_ulogic_vector(15 downto 0);
+    sweep  : out   sweep_words_t;
+    pulse  : out   pulse_words_t;
+    driver : out   driver_words_t;
     -- Sequencer
-    run         : in    std_ulogic;
-    go          : out   std_ulogic;
-    busy        : in    std_ulogic;
-    downward    : in    std_ulogic;
-    plane       : in    unsigned(5 downto 0);
-    sweep_begun : in    std_ulogic;
-    frame_begun : in    std_ulogic;
+    run      : in    std_ulogic;
+    go       : out   std_ulogic;
+    progress : in    progress_t;
     -- Faults: one bit for each bit of the word `error`
     sweep_faults      : in    std_ulogic_vector(4 downto 0);
     table_faults      : in    std_ulogic_vector(2 downto 0);
@@ -86,7 +62,7 @@ architecture rtl of register_file is
   subtype staged_t is natural range WORD_PLANES to WORD_LENS_COMMIT;
 
   signal staged           : words_t(staged_t);
-  signal checked          : words_t(staged_t);
+  signal committed        : words_t(staged_t);
   signal active           : words_t(staged_t);
   signal control          : word_t;
   signal selected         : unsigned(5 downto 0);
@@ -119,36 +95,46 @@ begin
   error <= '0' when errors = x"00" else
            '1';
 
-  planes             <= unsigned(active(WORD_PLANES)(6 downto 0));
-  triangle           <= active(WORD_SHAPE)(SHAPE_TRIANGLE);
-  trigger_active_low <= active(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
-  period             <= unsigned(active(WORD_PERIOD_US));
-  exposure           <= unsigned(active(WORD_EXPOSURE_US));
-  flyback            <= unsigned(active(WORD_FLYBACK_US));
-  trigger_width      <= unsigned(active(WORD_TRIGGER_WIDTH_US));
-  opto_on            <= unsigned(active(WORD_OPTO_ON_US)(opto_on_us_value_t));
-  opto_off           <= unsigned(active(WORD_OPTO_OFF_US)(opto_off_us_value_t));
-  lens_address       <= active(WORD_LENS_ADDRESS)(lens_address_value_t);
-  lens_start         <= active(WORD_LENS_START);
-  lens_stage         <= active(WORD_LENS_STAGE);
-  lens_commit        <= active(WORD_LENS_COMMIT);
+  sweep.planes   <= unsigned(active(WORD_PLANES)(6 downto 0));
+  sweep.triangle <= active(WORD_SHAPE)(SHAPE_TRIANGLE);
+  sweep.period   <= unsigned(active(WORD_PERIOD_US));
+  sweep.exposure <= unsigned(active(WORD_EXPOSURE_US));
+  sweep.flyback  <= unsigned(active(WORD_FLYBACK_US));
+  sweep.lead     <= leading_delay(pulse.active_low, pulse.opto_on, pulse.opto_off);
 
-  checked_planes   <= unsigned(checked(WORD_PLANES));
-  checked_period   <= unsigned(checked(WORD_PERIOD_US));
-  checked_exposure <= unsigned(checked(WORD_EXPOSURE_US));
-  checked_width    <= unsigned(checked(WORD_TRIGGER_WIDTH_US));
+  pulse.active_low <= active(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
+  pulse.width      <= unsigned(active(WORD_TRIGGER_WIDTH_US));
+  pulse.opto_on    <= unsigned(active(WORD_OPTO_ON_US)(opto_on_us_value_t));
+  pulse.opto_off   <= unsigned(active(WORD_OPTO_OFF_US)(opto_off_us_value_t));
 
-  table_plane  <= selected;
-  table_column <= to_unsigned(number - WORD_PLANE_CODE_A, 2) when is_row(number) else
+  driver.address <= active(WORD_LENS_ADDRESS)(lens_address_value_t);
+  driver.start   <= active(WORD_LENS_START);
+  driver.stage   <= active(WORD_LENS_STAGE);
+  driver.commit  <= active(WORD_LENS_COMMIT);
+
+  checked_level    <= committed(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
+  checked_opto_on  <= unsigned(committed(WORD_OPTO_ON_US)(opto_on_us_value_t));
+  checked_opto_off <= unsigned(committed(WORD_OPTO_OFF_US)(opto_off_us_value_t));
+
+  checked.planes    <= unsigned(committed(WORD_PLANES));
+  checked.period    <= unsigned(committed(WORD_PERIOD_US));
+  checked.exposure  <= unsigned(committed(WORD_EXPOSURE_US));
+  checked.width     <= unsigned(committed(WORD_TRIGGER_WIDTH_US));
+  checked.lead      <= leading_delay(checked_level, checked_opto_on, checked_opto_off);
+  checked.trail     <= trailing_delay(checked_level, checked_opto_on, checked_opto_off);
+  checked.new_level <= checked_level xor pulse.active_low;
+
+  table.plane  <= selected;
+  table.column <= to_unsigned(number - WORD_PLANE_CODE_A, 2) when is_row(number) else
                   "00";
 
-  status(STATUS_BUSY)           <= busy;
+  status(STATUS_BUSY)           <= progress.busy;
   status(STATUS_TABLE_VALID)    <= table_valid;
   status(STATUS_COMMIT_PENDING) <= pending;
-  status(STATUS_DOWNWARD)       <= downward;
+  status(STATUS_DOWNWARD)       <= progress.downward;
   status(STATUS_RUN)            <= run;
   status(STATUS_FAILED)         <= error;
-  status(status_plane_t)        <= std_ulogic_vector(plane);
+  status(status_plane_t)        <= std_ulogic_vector(progress.plane);
   status(15 downto 12)          <= "0000";
 
   number <= to_integer(word_number);
@@ -158,7 +144,7 @@ begin
 
     if rising_edge(clk) then
       commit      <= '0';
-      table_write <= '0';
+      table.write <= '0';
 
       writable <= '0';
       if (number < WORD_COUNT) then
@@ -177,16 +163,16 @@ begin
         elsif (number = WORD_PLANE_SELECT) then
           selected <= unsigned(write_data(plane_select_plane_t));
         elsif (is_row(number)) then
-          table_write <= '1';
-          table_data  <= write_data;
+          table.write <= '1';
+          table.data  <= write_data;
         end if;
       end if;
 
       if (commit = '1') then
-        checked <= staged;
+        committed <= staged;
       end if;
       if (apply = '1') then
-        active      <= checked;
+        active      <= committed;
         table_valid <= '1';
       end if;
 
@@ -194,30 +180,21 @@ begin
 
         for index in staged_t loop
 
-          staged(index)  <= DEFAULTS(index);
-          checked(index) <= DEFAULTS(index);
-          active(index)  <= DEFAULTS(index);
+          staged(index)    <= DEFAULTS(index);
+          committed(index) <= DEFAULTS(index);
+          active(index)    <= DEFAULTS(index);
 
         end loop;
 
         control     <= DEFAULTS(WORD_CONTROL);
         commit      <= '0';
-        table_write <= '0';
+        table.write <= '0';
         selected    <= (others => '0');
         table_valid <= '0';
       end if;
     end if;
 
   end process host_writes;
-
-  lead <= leading_delay(trigger_active_low, opto_on, opto_off);
-
-  checked_level     <= checked(WORD_SHAPE)(SHAPE_TRIGGER_ACTIVE_LOW);
-  checked_opto_on   <= unsigned(checked(WORD_OPTO_ON_US)(opto_on_us_value_t));
-  checked_opto_off  <= unsigned(checked(WORD_OPTO_OFF_US)(opto_off_us_value_t));
-  checked_lead      <= leading_delay(checked_level, checked_opto_on, checked_opto_off);
-  checked_trail     <= trailing_delay(checked_level, checked_opto_on, checked_opto_off);
-  checked_new_level <= checked_level xor trigger_active_low;
 
   gate : process (clk) is
   begin
@@ -250,7 +227,7 @@ begin
         errors <= kept or raised;
         if (kept = x"00") then
           if (sweep_faults /= "00000") then
-            error_at <= plane;
+            error_at <= progress.plane;
           else
             error_at <= table_fault_plane;
           end if;
@@ -269,10 +246,10 @@ begin
   begin
 
     if rising_edge(clk) then
-      if (sweep_begun = '1') then
+      if (progress.fire_sync = '1') then
         sweeps <= sweeps + 1;
       end if;
-      if (frame_begun = '1') then
+      if (progress.fire = '1') then
         frames <= frames + 1;
       end if;
       if (reset = '1') then
@@ -358,7 +335,7 @@ begin
 
     if rising_edge(clk) then
       read_shift <= read & read_shift(1);
-      table_read <= read;
+      table.read <= read;
       if (read_shift(2) = '1') then
         read_data <= selection;
       end if;
@@ -371,7 +348,7 @@ begin
 
       if (reset = '1') then
         read_shift   <= "00";
-        table_read   <= '0';
+        table.read   <= '0';
         latched_high <= (others => '0');
       end if;
     end if;

@@ -10,6 +10,9 @@ library ieee;
   use ieee.std_logic_1164.all;
   use ieee.numeric_std.all;
 
+library work;
+  use work.sweep_types_pkg.all;
+
 entity sweep_sequencer is
   generic (
     CLOCK_HZ : positive := 125_000_000;
@@ -22,34 +25,20 @@ entity sweep_sequencer is
     -- Sweep while '1'; an exposure that has begun is finished
     go : in    std_ulogic;
     -- Words in use; they change after boundary, and while the sequencer is not busy
-    planes          : in    unsigned(6 downto 0);
-    triangle        : in    std_ulogic;
-    period          : in    unsigned(15 downto 0);
-    exposure        : in    unsigned(15 downto 0);
-    flyback         : in    unsigned(15 downto 0);
-    lead            : in    unsigned(7 downto 0);
-    start_write     : in    std_ulogic_vector(15 downto 0);
-    stage_registers : in    std_ulogic_vector(15 downto 0);
-    commit_write    : in    std_ulogic_vector(15 downto 0);
+    sweep  : in    sweep_words_t;
+    driver : in    driver_words_t;
     -- Table of planes: data one cycle after read
-    table_plane  : out   unsigned(5 downto 0);
-    table_column : out   unsigned(1 downto 0);
-    table_read   : out   std_ulogic;
-    table_data   : in    std_ulogic_vector(15 downto 0);
+    table      : out   row_request_t;
+    table_data : in    std_ulogic_vector(15 downto 0);
     -- Lens bus
     lens_start    : out   std_ulogic;
     lens_register : out   std_ulogic_vector(7 downto 0);
     lens_value    : out   std_ulogic_vector(7 downto 0);
     lens_done     : in    std_ulogic;
     lens_fault    : in    std_ulogic;
-    -- One cycle each: trigger pulse, sync pulse (first plane of a sweep), last trigger of a sweep, trigger not given
-    fire      : out   std_ulogic;
-    fire_sync : out   std_ulogic;
-    boundary  : out   std_ulogic;
-    late      : out   std_ulogic;
-    busy      : out   std_ulogic;
-    plane     : out   unsigned(5 downto 0);
-    downward  : out   std_ulogic
+    progress      : out   progress_t;
+    -- One cycle: a trigger was not given
+    late : out   std_ulogic
   );
 end entity sweep_sequencer;
 
@@ -137,11 +126,11 @@ begin
       fetch        => fetch,
       fetched      => fetched,
       advance      => begin_slot,
-      planes       => planes,
-      triangle     => triangle,
-      flyback      => flyback,
-      plane        => plane,
-      downward     => downward,
+      planes       => sweep.planes,
+      triangle     => sweep.triangle,
+      flyback      => sweep.flyback,
+      plane        => progress.plane,
+      downward     => progress.downward,
       first        => first,
       last         => last,
       next_flyback => next_flyback,
@@ -149,9 +138,9 @@ begin
       delay        => delay,
       code_b       => code_b,
       settle       => settle,
-      table_plane  => table_plane,
-      table_column => table_column,
-      table_read   => table_read,
+      table_plane  => table.plane,
+      table_column => table.column,
+      table_read   => table.read,
       table_data   => table_data
     );
 
@@ -163,16 +152,16 @@ begin
     port map (
       clk        => clk,
       running    => running,
-      period     => period,
+      period     => sweep.period,
       flyback    => next_flyback,
-      exposure   => exposure,
-      lead       => lead,
+      exposure   => sweep.exposure,
+      lead       => sweep.lead,
       fire_due   => fire_due,
       expose_due => expose_due,
       slot_end   => slot_end
     );
 
-  sweep : process (clk) is
+  advance_sweep : process (clk) is
 
     procedure write_lens (
       number,
@@ -192,7 +181,7 @@ begin
     ) is
     begin
 
-      write_lens(stage_registers(7 downto 0), low_bits & "000000");
+      write_lens(driver.stage(7 downto 0), low_bits & "000000");
       state <= stage_low_state;
 
     end procedure write_stage;
@@ -200,7 +189,7 @@ begin
     procedure write_commit is
     begin
 
-      write_lens(commit_write(7 downto 0), commit_write(15 downto 8));
+      write_lens(driver.commit(7 downto 0), driver.commit(15 downto 8));
       state <= commit_state;
 
     end procedure write_commit;
@@ -233,10 +222,11 @@ begin
 
     if rising_edge(clk) then
       lens_start <= '0';
-      fire       <= fire_now;
-      fire_sync  <= expose_due and first and (exposing or fire_now);
-      boundary   <= fire_now and last;
       late       <= '0';
+
+      progress.fire      <= fire_now;
+      progress.fire_sync <= expose_due and first and (exposing or fire_now);
+      progress.boundary  <= fire_now and last;
 
       if (lens_done = '1') then
         lens_busy <= '0';
@@ -256,11 +246,11 @@ begin
 
         when idle_state =>
 
-          busy <= '0';
+          progress.busy <= '0';
           if (go = '1') then
-            busy  <= '1';
-            state <= wake_state;
-            write_lens(start_write(7 downto 0), start_write(15 downto 8));
+            progress.busy <= '1';
+            state         <= wake_state;
+            write_lens(driver.start(7 downto 0), driver.start(15 downto 8));
           end if;
 
         when wake_state =>
@@ -288,7 +278,7 @@ begin
             stop;
           elsif (written = '1') then
             state <= stage_high_state;
-            write_lens(stage_registers(15 downto 8), code(9 downto 2));
+            write_lens(driver.stage(15 downto 8), code(9 downto 2));
           end if;
 
         when stage_high_state =>
@@ -318,7 +308,7 @@ begin
           elsif (written = '1') then
             if (second = '0') then
               state <= delay_state;
-            elsif (settle > lead) then
+            elsif (settle > sweep.lead) then
               state <= settle_state;
             else
               state <= ready_state;
@@ -338,7 +328,7 @@ begin
 
           if (go = '0') then
             stop;
-          elsif (waited = settle - lead) then
+          elsif (waited = settle - sweep.lead) then
             state <= ready_state;
           end if;
 
@@ -382,19 +372,20 @@ begin
 
       if (reset = '1') then
         state      <= idle_state;
-        busy       <= '0';
         second     <= '0';
         running    <= '0';
         exposing   <= '0';
         lens_busy  <= '0';
         lens_start <= '0';
-        fire       <= '0';
-        fire_sync  <= '0';
         late       <= '0';
-        boundary   <= '0';
+
+        progress.busy      <= '0';
+        progress.fire      <= '0';
+        progress.fire_sync <= '0';
+        progress.boundary  <= '0';
       end if;
     end if;
 
-  end process sweep;
+  end process advance_sweep;
 
 end architecture rtl;

@@ -22,6 +22,7 @@ from pathlib import Path
 
 from cocotb_tools.runner import get_runner
 
+import flatten
 import netlist
 
 TEST = Path(__file__).resolve().parent
@@ -31,6 +32,7 @@ import mapped  # noqa: E402
 import pins  # noqa: E402
 
 RTL = FPGA / "rtl"
+HARNESS = TEST / "lens_sweep_bench.vhd"
 BUILD = Path(os.environ.get("FPGA_BUILD", FPGA.parent / "build" / "fpga"))
 COVERAGE = BUILD / "coverage.jsonl"
 FAST = {"CLOCK_HZ": 8_000_000}
@@ -60,12 +62,12 @@ ENTITIES = [
     Bench("test_trigger_output", "trigger_output", FAST),
     Bench("test_i2c_master", "i2c_master", FAST | {"INPUT_CYCLES": 3}),
     Bench("test_i2c_slave", "i2c_slave", FAST),
-    Bench("test_register_file", "register_file", FAST),
-    Bench("test_plane_table", "plane_table", FAST),
-    Bench("test_host_interface", "host_interface", FAST),
+    Bench("test_register_file", "register_file_flat", FAST),
+    Bench("test_plane_table", "plane_table_flat", FAST),
+    Bench("test_host_interface", "host_interface_flat", FAST),
     Bench("test_plane_order", "plane_order", {}),
     Bench("test_slot_timer", "slot_timer", FAST),
-    Bench("test_sweep_sequencer", "sweep_sequencer", FAST),
+    Bench("test_sweep_sequencer", "sweep_sequencer_flat", FAST),
 ]
 
 CHAIN = [
@@ -90,19 +92,23 @@ DRAWINGS.append(Bench("scenes", "lens_sweep_bench", FAST, "drawing_lens_sweep_to
 
 
 def sources(rtl):
-    """Files of sources.txt, in order, then the harness."""
+    """Files of sources.txt, in order."""
     lines = (FPGA / "sources.txt").read_text(encoding="utf-8").splitlines()
     files = [line.split()[1] for line in lines if line and not line.startswith("#")]
-    return [rtl / Path(file).name for file in files] + [TEST / "lens_sweep_bench.vhd"]
+    return [rtl / Path(file).name for file in files]
 
 
 def build(rtl, folder, log):
     """Analyses the design into folder; gives the runner."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    design = sources(rtl)
+    flat = flatten.write(design, folder)
     runner = get_runner("ghdl")
-    runner.build(sources=sources(rtl), hdl_toplevel="lens_sweep_bench", build_args=[STANDARD], build_dir=folder,
-                 always=True, log_file=log)
+    runner.build(sources=[*design, *flat, HARNESS], hdl_toplevel="lens_sweep_bench", build_args=[STANDARD],
+                 build_dir=folder, always=True, log_file=log)
+    for file in flat:
+        subprocess.run(["ghdl", "-m", "--work=top", STANDARD, file.stem], cwd=folder, check=True)
     return runner
 
 
@@ -192,7 +198,7 @@ def check_synthesis(report):
     work = BUILD / "synthesis"
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    files = [str(file) for file in sources(RTL)[:-1]]
+    files = [str(file) for file in sources(RTL)]
     run_command(report, "analysis without a warning", ["ghdl", "-a", STANDARD, f"--workdir={work}", *files],
                 ("warning",))
     run_command(report, "synthesis without a latch or a warning",
@@ -221,13 +227,18 @@ def check_elaboration(report):
 
 def check_pages(report):
     """Every generic and port of an entity stands on its page."""
-    for file in sources(RTL)[:-1]:
+    for file in sources(RTL):
         declaration = re.search(r"entity (\w+) is(.*?)end entity", file.read_text(encoding="utf-8"), re.DOTALL)
         if declaration:
             page = (FPGA / "doc" / f"{file.stem}.md").read_text(encoding="utf-8")
             names = re.findall(r"^\s*(\w+)\s*: ", declaration.group(2), re.MULTILINE)
             missing = [name for name in names if f"`{name}`" not in page]
             report.add(f"page of {file.stem} is whole " + " ".join(missing), bool(names) and not missing)
+    page = (FPGA / "doc" / "records.md").read_text(encoding="utf-8")
+    records = flatten.records_of((RTL / "sweep_types_pkg.vhd").read_text(encoding="utf-8"))
+    missing = [name for record, elements in records.items() for name in (record, *(name for name, _ in elements))
+               if f"`{name}`" not in page]
+    report.add("page of the records is whole " + " ".join(missing), bool(records) and not missing)
 
 
 def check_constraints(report):
@@ -285,7 +296,7 @@ def check_mutations(report, every):
         try:
             runner = build(rtl, folder / "build", folder / "build.log")
             verdict = simulate(runner, bench, rtl, folder / "build", log, mutation.get("tests"))
-        except (RuntimeError, SystemExit):
+        except (RuntimeError, SystemExit, subprocess.CalledProcessError):
             report.add(f"{name} (it does not compile)", False)
             continue
         # A test must have failed; that the simulation did not come about is no proof
@@ -337,7 +348,7 @@ def main():
         check_elaboration(report)
     if options.only in "style":
         run_command(report, "vsg", ["vsg", "-c", str(FPGA / "vsg.yaml"), "-of", "syntastic", "-f",
-                                    *(str(file) for file in sources(RTL))])
+                                    *(str(file) for file in [*sources(RTL), HARNESS])])
     if options.update_drawings:
         os.environ["BENCH_UPDATE"] = "1"
     benches = [bench for bench in BENCHES + DRAWINGS if options.only in bench.name]

@@ -87,7 +87,8 @@ async def register_file(dut):
     from words import WORD
     await begin(dut, **IDLE)
     record = Recorder(word_number=dut.word_number, write=dut.write, write_data=dut.write_data, commit=dut.commit,
-                      checked_period=dut.checked_period, apply=dut.apply, period=dut.period)
+                      apply=dut.apply,
+                      **{"checked.period": dut.checked_period, "sweep.period": dut.sweep_period})
     await cycles(dut, 3)
     await write(dut, "period_us", 7000)
     await cycles(dut, 3)
@@ -97,7 +98,7 @@ async def register_file(dut):
     await cycles(dut, 6)
     assert WORD["period_us"] == 15
     keep("register_file", record.draw("register_file: a staged word, committed, then applied between two sweeps",
-                                      vectors=["word_number", "write_data", "checked_period", "period"]))
+                                      vectors=["word_number", "write_data", "checked.period", "sweep.period"]))
 
 
 @cocotb.test()
@@ -105,8 +106,8 @@ async def plane_table(dut):
     from test_plane_table import start, write_rows
     await start(dut, planes=3)
     await write_rows(dut, [[1, 2, 3, 4]] * 3)
-    record = Recorder(commit=dut.commit, state=dut.state, address=dut.address, pending=dut.pending,
-                      boundary=dut.boundary, apply=dut.apply, bank=dut.bank)
+    record = Recorder(commit=dut.commit, state=dut.dut.state, address=dut.dut.address, pending=dut.pending,
+                      boundary=dut.boundary, apply=dut.apply, bank=dut.dut.bank)
     await cycles(dut, 3)
     await pulse(dut, dut.commit)
     await cycles(dut, 34)
@@ -124,15 +125,17 @@ async def host_interface(dut):
     await rig.begin()
     await rig.commit(table_of(1, 2))
     dut.idle.value = 0
-    record = Recorder(scl_in=dut.scl_in, sda_in=dut.sda_in, word_number=dut.word_number, write=dut.write,
-                      commit=dut.commit, pending=dut.pending, boundary=dut.boundary, period=dut.period)
+    inner = dut.dut
+    record = Recorder(scl_in=dut.scl_in, sda_in=dut.sda_in, word_number=inner.word_number, write=inner.write,
+                      commit=inner.commit, pending=inner.pending,
+                      **{"progress.boundary": dut.progress_boundary, "sweep.period": dut.sweep_period})
     await rig.write("period_us", 1200)
     await rig.write("commit", 1)
     await cycles(dut, 200)
-    await pulse(dut, dut.boundary)
+    await pulse(dut, dut.progress_boundary)
     await cycles(dut, 100)
     keep("host_interface", record.draw("host_interface: a new period, committed, and in use from the end of the sweep",
-                                       vectors=["word_number", "period"]))
+                                       vectors=["word_number", "sweep.period"]))
 
 
 @cocotb.test()
@@ -173,15 +176,17 @@ async def slot_timer(dut):
 async def sweep_sequencer(dut):
     from test_sweep_sequencer import started
     rig = await started(dut)
-    await cycles_until(dut, dut.fire, 1, 4000)
-    await cycles_until(dut, dut.running, 1, 10)
-    record = Recorder(state=dut.state, plane=dut.plane, lens_start=dut.lens_start, lens_register=dut.lens_register,
-                      lens_value=dut.lens_value, fire=dut.fire, fire_sync=dut.fire_sync, boundary=dut.boundary)
+    await cycles_until(dut, dut.progress_fire, 1, 4000)
+    await cycles_until(dut, dut.dut.running, 1, 10)
+    record = Recorder(state=dut.dut.state, lens_start=dut.lens_start, lens_register=dut.lens_register,
+                      lens_value=dut.lens_value,
+                      **{f"progress.{name}": getattr(dut, f"progress_{name}")
+                         for name in ("plane", "fire", "fire_sync", "boundary")})
     await cycles(dut, 3 * 80 * 8 + 40)
     assert len(rig.fires) >= 3
     names = [name.removesuffix("_state") for name in coverage.states_of("sweep_sequencer")]
     keep("sweep_sequencer", record.draw("sweep_sequencer: three planes, period 80 us, exposure 40 us, writes of 5 us",
-                                        vectors=["plane", "lens_register", "lens_value"], states={"state": names}))
+                                        vectors=["progress.plane", "lens_register", "lens_value"], states={"state": names}))
 
 
 @cocotb.test()

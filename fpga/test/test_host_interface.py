@@ -13,12 +13,12 @@ from sweep_model import Plane, Table
 from words import BIT, DEFAULT, WORD, errors_of
 
 BIT_PS = 2_500_000
-INPUTS = dict(table_plane=0, table_column=0, table_read=0, run=0, busy=0, idle=1, boundary=0, plane=0, downward=0,
-              sweep_begun=0, frame_begun=0, sweep_faults=0)
-OUTPUTS = {"planes": "planes", "period_us": "period", "exposure_us": "exposure", "flyback_us": "flyback",
-           "trigger_width_us": "trigger_width", "opto_on_us": "opto_on", "opto_off_us": "opto_off",
-           "lens_address": "lens_address", "lens_start": "lens_start", "lens_stage": "lens_stage",
-           "lens_commit": "lens_commit"}
+INPUTS = dict(table_plane=0, table_column=0, table_read=0, run=0, idle=1, progress_busy=0, progress_plane=0,
+              progress_downward=0, progress_fire=0, progress_fire_sync=0, progress_boundary=0, sweep_faults=0)
+OUTPUTS = {"planes": "sweep_planes", "period_us": "sweep_period", "exposure_us": "sweep_exposure",
+           "flyback_us": "sweep_flyback", "trigger_width_us": "pulse_width", "opto_on_us": "pulse_opto_on",
+           "opto_off_us": "pulse_opto_off", "lens_address": "driver_address", "lens_start": "driver_start",
+           "lens_stage": "driver_stage", "lens_commit": "driver_commit"}
 
 
 def table_of(seed, planes, **changes):
@@ -34,8 +34,8 @@ class Rig:
         self.dut = dut
         scl, sda = OpenDrain(dut.scl_in), OpenDrain(dut.sda_in, dut.sda_low)
         self.host = I2cHost(scl.pull(), sda.pull(), sda, BIT_PS)
-        coverage.watch("i2c_slave", dut.slave.state)
-        coverage.watch("plane_table", dut.planes_table.state)
+        coverage.watch("i2c_slave", dut.dut.slave.state)
+        coverage.watch("plane_table", dut.dut.planes_table.state)
 
     async def begin(self, **changes):
         await begin(self.dut, **(INPUTS | changes))
@@ -78,8 +78,8 @@ class Rig:
         words = dict(zip(["planes", "shape", "period_us", "exposure_us", "flyback_us", "trigger_width_us",
                           "opto_on_us", "opto_off_us"], table.words()))
         assert used == {name: (DEFAULT | words)[name] for name in OUTPUTS}
-        assert int(self.dut.lead.value) == table.lead_us
-        assert (int(self.dut.triangle.value), int(self.dut.trigger_active_low.value)) == (table.triangle, table.active_low)
+        assert int(self.dut.sweep_lead.value) == table.lead_us
+        assert (int(self.dut.sweep_triangle.value), int(self.dut.pulse_active_low.value)) == (table.triangle, table.active_low)
         assert await self.rows(len(table.planes)) == table.planes
 
 
@@ -104,7 +104,7 @@ async def committed_table_waits_for_the_end_of_the_sweep(dut):
     await rig.commit(second)
     assert await rig.read("status") & BIT["status.commit_pending"]
     await rig.assert_in_use(first)
-    await pulse(dut, dut.boundary)
+    await pulse(dut, dut.progress_boundary)
     await cycles(dut, 2)
     await rig.assert_in_use(second)
     assert not await rig.read("status") & BIT["status.commit_pending"]
@@ -117,12 +117,12 @@ async def new_polarity_waits_for_rest(dut):
     await rig.commit(table_of(4, 3))
     dut.idle.value = 0
     await rig.commit(table_of(5, 3, active_low=True))
-    await pulse(dut, dut.boundary)
+    await pulse(dut, dut.progress_boundary)
     await cycles(dut, 100)
-    assert int(dut.trigger_active_low.value) == 0
+    assert int(dut.pulse_active_low.value) == 0
     dut.idle.value = 1
     await cycles(dut, 10)
-    assert int(dut.trigger_active_low.value) == 1
+    assert int(dut.pulse_active_low.value) == 1
 
 
 @cocotb.test()
@@ -182,7 +182,7 @@ async def sweep_goes_when_told_and_stops_with_a_fault(dut):
     dut.run.value = 1
     await cycles(dut, 10)
     assert int(dut.go.value) == 1
-    dut.plane.value = 1
+    dut.progress_plane.value = 1
     for number, name in enumerate(["lens_nack", "lens_stretch", "lens_stuck", "lens_arbitration", "late"]):
         dut.sweep_faults.value = 1 << number
         await cycles(dut, 1)
@@ -199,14 +199,14 @@ async def sweep_goes_when_told_and_stops_with_a_fault(dut):
 @cocotb.test()
 async def host_sees_the_sweep(dut):
     rig = Rig(dut)
-    await rig.begin(busy=1, plane=33, downward=1)
+    await rig.begin(progress_busy=1, progress_plane=33, progress_downward=1)
     status = await rig.read("status")
     assert status >> 6 == 33
     assert status & BIT["status.busy"] and status & BIT["status.downward"]
     for _ in range(3):
-        await pulse(dut, dut.sweep_begun)
+        await pulse(dut, dut.progress_fire_sync)
         for _ in range(2):
-            await pulse(dut, dut.frame_begun)
+            await pulse(dut, dut.progress_fire)
             await cycles(dut, 1)
     assert (await rig.read("sweep_count_low"), await rig.read("frame_count_low")) == (3, 6)
 
@@ -221,5 +221,5 @@ async def reset_forgets_the_table(dut):
     assert int(dut.go.value) == 1
     await rig.begin()
     assert int(dut.go.value) == 0
-    assert int(dut.period.value) == DEFAULT["period_us"]
+    assert int(dut.sweep_period.value) == DEFAULT["period_us"]
     assert not await rig.read("status") & BIT["status.table_valid"]

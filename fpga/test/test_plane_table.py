@@ -7,16 +7,23 @@ import random
 import cocotb
 
 import coverage
-from entity import begin, collect, cycles, pulse
+from entity import begin, collect, cycles, drive, pulse
 
 LENS_GAP, LENS_STAGE = 293, 147
-INPUTS = dict(host_plane=0, host_column=0, host_write=0, host_data=0, host_read=0, commit=0, planes=2, period=1000,
-              exposure=500, trigger_width=100, lead=0, trail=0, new_level=0, idle=0, boundary=0, plane=0, column=0, read=0)
+CHECKED = dict(planes=2, period=1000, exposure=500, width=100, lead=0, trail=0, new_level=0)
+INPUTS = dict(host_plane=0, host_column=0, host_write=0, host_data=0, host_read=0, commit=0, idle=0, boundary=0,
+              table_plane=0, table_column=0, table_read=0)
 
 
-async def start(dut, **changes):
-    await begin(dut, **(INPUTS | changes))
-    coverage.watch("plane_table", dut.state)
+def check(dut, **words):
+    """The committed words, from now on."""
+    drive(dut, **{f"checked_{word}": value for word, value in words.items()})
+
+
+async def start(dut, idle=0, **changes):
+    check(dut, **(CHECKED | changes))
+    await begin(dut, **(INPUTS | dict(idle=idle)))
+    coverage.watch("plane_table", dut.dut.state)
 
 
 async def write_rows(dut, rows):
@@ -33,9 +40,9 @@ async def read_staged(dut, plane, column):
 
 
 async def read_used(dut, plane, column):
-    dut.plane.value, dut.column.value = plane, column
-    await pulse(dut, dut.read)
-    return int(dut.q.value)
+    dut.table_plane.value, dut.table_column.value = plane, column
+    await pulse(dut, dut.table_read)
+    return int(dut.table_data.value)
 
 
 async def used_rows(dut, planes):
@@ -60,7 +67,7 @@ async def committed_table_is_used_at_once_when_idle(dut):
     await start(dut, idle=1)
     for planes in (2, 5, 64):
         rows = rows_of(rng, planes)
-        dut.planes.value = planes
+        check(dut, planes=planes)
         await write_rows(dut, rows)
         assert await read_staged(dut, planes - 1, 2) == rows[-1][2]
         applies = collect(dut, dut.apply)
@@ -124,12 +131,11 @@ async def later_commit_replaces_the_one_that_waits(dut):
 
 @cocotb.test()
 async def limits_of_the_settings(dut):
-    good = dict(planes=2, period=1000, exposure=500, trigger_width=100, lead=0, trail=0)
     cases = [({"planes": 2}, None), ({"planes": 64}, None), ({"planes": 1}, "planes"), ({"planes": 0}, "planes"),
              ({"planes": 65}, "planes"), ({"planes": 0xFFFF}, "planes"), ({"planes": 130}, "planes"),
-             ({"exposure": LENS_STAGE, "trigger_width": 5}, None),
-             ({"exposure": LENS_STAGE - 1, "trigger_width": 5}, "timing"),
-             ({"trigger_width": 0}, "timing"), ({"trigger_width": 500}, None), ({"trigger_width": 501}, "timing"),
+             ({"exposure": LENS_STAGE, "width": 5}, None),
+             ({"exposure": LENS_STAGE - 1, "width": 5}, "timing"),
+             ({"width": 0}, "timing"), ({"width": 500}, None), ({"width": 501}, "timing"),
              ({"period": 500 + LENS_GAP}, None), ({"period": 500 + LENS_GAP - 1}, "timing"),
              ({"period": 500}, "timing"), ({"period": 10}, "timing"), ({"period": 65535, "exposure": 60000}, None),
              ({"trail": 99}, None), ({"trail": 100}, "timing"), ({"trail": 109, "lead": 10}, None),
@@ -138,8 +144,7 @@ async def limits_of_the_settings(dut):
     await start(dut, idle=1)
     await write_rows(dut, [[0, 0, 0, 0]] * 64)
     for changes, expected in cases:
-        for name, value in (good | changes).items():
-            getattr(dut, name).value = value
+        check(dut, **(CHECKED | changes))
         await cycles(dut, 2)
         assert list(await commit(dut)) == ([expected] if expected else []), changes
 

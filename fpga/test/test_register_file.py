@@ -9,9 +9,9 @@ import cocotb
 from entity import begin, collect, cycles, pulse
 from words import BIT, DEFAULT, ERRORS, MASK, REGISTERS, STAGED, WORD, WRITABLE
 
-IDLE = {name: 0 for name in ("word_number", "read", "write", "write_data", "table_q", "pending", "apply", "run", "busy",
-                             "downward", "plane", "sweep_begun", "frame_begun", "sweep_faults", "table_faults",
-                             "table_fault_plane")}
+IDLE = {name: 0 for name in ("word_number", "read", "write", "write_data", "table_q", "pending", "apply", "run",
+                             "progress_busy", "progress_downward", "progress_plane", "progress_fire_sync",
+                             "progress_fire", "progress_boundary", "sweep_faults", "table_faults", "table_fault_plane")}
 SELECTORS = {"plane_code_a", "plane_delay_us", "plane_code_b", "plane_settle_us"}
 
 
@@ -65,10 +65,10 @@ async def writable_tells_the_words_that_can_be_written(dut):
 async def staged_words_keep_their_bits_and_wait_for_apply(dut):
     rng = random.Random(4)
     await begin(dut, **IDLE)
-    outputs = {"period_us": "period", "exposure_us": "exposure", "flyback_us": "flyback",
-               "trigger_width_us": "trigger_width", "opto_on_us": "opto_on", "opto_off_us": "opto_off",
-               "lens_address": "lens_address", "lens_start": "lens_start", "lens_stage": "lens_stage",
-               "lens_commit": "lens_commit"}
+    outputs = {"period_us": "sweep_period", "exposure_us": "sweep_exposure", "flyback_us": "sweep_flyback",
+               "trigger_width_us": "pulse_width", "opto_on_us": "pulse_opto_on", "opto_off_us": "pulse_opto_off",
+               "lens_address": "driver_address", "lens_start": "driver_start", "lens_stage": "driver_stage",
+               "lens_commit": "driver_commit"}
     checked = {"period_us": "checked_period", "exposure_us": "checked_exposure", "planes": "checked_planes",
                "trigger_width_us": "checked_width"}
     used = dict(DEFAULT)
@@ -93,12 +93,12 @@ async def staged_words_keep_their_bits_and_wait_for_apply(dut):
         used = {name: value & MASK[name] for name, value in values.items()}
         for name, output in outputs.items():
             assert int(getattr(dut, output).value) == used[name], name
-        assert int(dut.planes.value) == used["planes"] & 0x7F
-        assert int(dut.triangle.value) == bool(used["shape"] & BIT["shape.triangle"])
+        assert int(dut.sweep_planes.value) == used["planes"] & 0x7F
+        assert int(dut.sweep_triangle.value) == bool(used["shape"] & BIT["shape.triangle"])
         low = bool(used["shape"] & BIT["shape.trigger_active_low"])
-        assert int(dut.trigger_active_low.value) == low
+        assert int(dut.pulse_active_low.value) == low
         lead, trail = (("opto_off_us", "opto_on_us") if low else ("opto_on_us", "opto_off_us"))
-        assert int(dut.lead.value) == int(dut.checked_lead.value) == used[lead]
+        assert int(dut.sweep_lead.value) == int(dut.checked_lead.value) == used[lead]
         assert int(dut.checked_trail.value) == used[trail]
 
 
@@ -150,13 +150,13 @@ async def errors_stay_until_cleared(dut):
     for number, name in enumerate(ERRORS):
         await write(dut, "error", 0xFFFF)
         assert int(dut.error.value) == 0
-        dut.plane.value, dut.table_fault_plane.value = 10 + number, 40 + number
+        dut.progress_plane.value, dut.table_fault_plane.value = 10 + number, 40 + number
         faults = dut.sweep_faults if number < 5 else dut.table_faults
         faults.value = 1 << (number if number < 5 else number - 5)
         await cycles(dut, 1)
         faults.value = 0
         await cycles(dut, 2)
-        dut.plane.value = dut.table_fault_plane.value = 0
+        dut.progress_plane.value = dut.table_fault_plane.value = 0
         assert int(dut.error.value) == 1
         assert await read(dut, "error") == BIT[f"error.{name}"]
         assert await read(dut, "error_plane") == (10 if number < 5 else 40) + number
@@ -169,7 +169,7 @@ async def errors_stay_until_cleared(dut):
 async def second_error_keeps_the_plane_of_the_first(dut):
     await begin(dut, **IDLE)
     for plane, fault in ((7, 1), (9, 16)):
-        dut.plane.value = plane
+        dut.progress_plane.value = plane
         dut.sweep_faults.value = fault
         await cycles(dut, 1)
         dut.sweep_faults.value = 0
@@ -192,7 +192,7 @@ async def error_raised_while_it_is_cleared_stays(dut):
 @cocotb.test()
 async def counters_have_32_bits_and_latch_the_high_word(dut):
     await begin(dut, **IDLE)
-    for name, strobe in (("sweep", dut.sweep_begun), ("frame", dut.frame_begun)):
+    for name, strobe in (("sweep", dut.progress_fire_sync), ("frame", dut.progress_fire)):
         strobe.value = 1
         await cycles(dut, 0x1_0003)
         strobe.value = 0
@@ -211,12 +211,12 @@ async def counters_have_32_bits_and_latch_the_high_word(dut):
 @cocotb.test()
 async def status_shows_the_inputs(dut):
     await begin(dut, **IDLE)
-    for name, signal in (("busy", dut.busy), ("downward", dut.downward), ("commit_pending", dut.pending),
+    for name, signal in (("busy", dut.progress_busy), ("downward", dut.progress_downward), ("commit_pending", dut.pending),
                          ("run", dut.run)):
         signal.value = 1
         assert await read(dut, "status") == BIT[f"status.{name}"]
         signal.value = 0
-    dut.plane.value = 0b101011
+    dut.progress_plane.value = 0b101011
     assert await read(dut, "status") == 0b101011 << 6
 
 

@@ -15,21 +15,22 @@ TICK = CLOCK_HZ // 1_000_000
 WRITE = 40                      # cycles of a write: 5 us
 START, LOW, HIGH, COMMIT = 0x03, 0x04, 0x08, 0x09
 ROWS = [[111, 2, 222, 5], [333, 0, 444, 0], [555, 3, 666, 1]]
-INPUTS = dict(go=0, planes=3, triangle=0, period=80, exposure=40, flyback=0, lead=0, start_write=0x0303,
-              stage_registers=0x0804, commit_write=0x0209, table_data=0, lens_done=0, lens_fault=0)
+SWEEP = dict(planes=3, triangle=0, period=80, exposure=40, flyback=0, lead=0)
+INPUTS = dict(go=0, driver_address=0x77, driver_start=0x0303, driver_stage=0x0804, driver_commit=0x0209, table_data=0,
+              lens_done=0, lens_fault=0)
 
 
 class Rig:
     def __init__(self, dut):
         self.dut, self.rows = dut, ROWS
         self.writes, self.slow, self.faulty = [], {}, set()
-        self.fires = collect(dut, dut.fire, dut.plane, dut.downward)
-        self.syncs = collect(dut, dut.fire_sync, dut.plane)
-        self.boundaries = collect(dut, dut.boundary)
+        self.fires = collect(dut, dut.progress_fire, dut.progress_plane, dut.progress_downward)
+        self.syncs = collect(dut, dut.progress_fire_sync, dut.progress_plane)
+        self.boundaries = collect(dut, dut.progress_boundary)
         self.lates = collect(dut, dut.late)
         cocotb.start_soon(self._lens())
         cocotb.start_soon(self._table())
-        coverage.watch("sweep_sequencer", dut.state)
+        coverage.watch("sweep_sequencer", dut.dut.state)
 
     def renew(self, rows, slow, faulty):
         """Forgets what was; for tests that start more than once."""
@@ -77,14 +78,14 @@ class Rig:
         return [(after[0] - before[0]) // CLOCK_PS for before, after in zip(events, events[1:])]
 
     async def rest(self, limit=2000):
-        await cycles_until(self.dut, self.dut.busy, 0, limit)
+        await cycles_until(self.dut, self.dut.progress_busy, 0, limit)
         await cycles(self.dut, 1000)
-        assert int(self.dut.busy.value) == 0
+        assert int(self.dut.progress_busy.value) == 0
 
 
 
 async def started(dut, rows=ROWS, slow=None, faulty=(), rig=None, **changes):
-    await begin(dut, **(INPUTS | changes))
+    await begin(dut, **INPUTS, **{f"sweep_{word}": value for word, value in (SWEEP | changes).items()})
     rig = rig or Rig(dut)
     rig.renew(rows, slow, faulty)
     dut.go.value = 1
@@ -253,7 +254,7 @@ async def stop_at_any_moment_gives_no_further_trigger(dut):
         await cycles(dut, 2)
         assert len(rig.fires) <= fires + 1
         fires, last = len(rig.fires), rig.fires[-1][0] if rig.fires else last
-        ended = await cycles_until(dut, dut.busy, 0, 1000)
+        ended = await cycles_until(dut, dut.progress_busy, 0, 1000)
         if last and ended > 60:
             assert get_sim_time("ps") - last >= 39 * TICK * CLOCK_PS
         await cycles(dut, 800)
@@ -271,7 +272,7 @@ async def reset_ends_everything(dut):
     await until_fires(rig, 2)
     dut.reset.value = 1
     await cycles(dut, 1)
-    assert int(dut.busy.value) == 0 and int(dut.lens_start.value) == 0
+    assert int(dut.progress_busy.value) == 0 and int(dut.lens_start.value) == 0
     dut.go.value = 0
     dut.reset.value = 0
     await cycles(dut, 1000)
