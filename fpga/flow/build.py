@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""Makes the bitstream of a board with open tools: GHDL, Yosys, nextpnr, and prjxray's or prjtrellis' database.
+"""Makes the bitstream of a board with open tools: GHDL, Yosys, nextpnr, and prjxray's, prjtrellis' or IceStorm's database.
 
     build.sh BOARD...       the boards of boards.toml; the bitstream and its reports come to build/fpga/BOARD/
 
@@ -17,6 +17,7 @@ import tomllib
 from collections import Counter
 from pathlib import Path
 
+import ice
 import tools
 import xray
 from pins import PULLS, pins_of
@@ -29,13 +30,14 @@ TOP = "lens_sweep_top"
 MARGIN = 1.05
 # Placements that are tried; the router does not mend a path that is too fast
 SEEDS = range(1, 9)
-SYNTHESIS = {"xc7": "synth_xilinx -family xc7 -top {top} -flatten -abc9", "ecp5": "synth_ecp5 -top {top} -abc9"}
+SYNTHESIS = {"xc7": "synth_xilinx -family xc7 -top {top} -flatten -abc9", "ecp5": "synth_ecp5 -top {top} -abc9",
+             "ice40": "synth_ice40 -top {top} -device u -abc9"}
 ECP5_SIZE = {"LFE5U-12F": "--12k", "LFE5U-25F": "--25k", "LFE5U-85F": "--85k"}
 # The words with which a 7-series part finds the width of the bus that loads it
 BUS_WIDTH = bytes.fromhex("000000bb11220044")
 # The mapper's cells, by what they are
-KINDS = {"look-up tables": r"LUT[1-6]", "flip-flops": r"FD[RSCP]E|TRELLIS_FF", "carry cells": r"CARRY4|CCU2C",
-         "block RAMs": r"RAMB18E1|RAMB36E1|DP16KD"}
+KINDS = {"look-up tables": r"LUT[1-6]|SB_LUT4", "flip-flops": r"FD[RSCP]E|TRELLIS_FF|SB_DFF\w*",
+         "carry cells": r"CARRY4|CCU2C|SB_CARRY", "block RAMs": r"RAMB18E1|RAMB36E1|DP16KD|SB_RAM40_4K"}
 
 
 def verilog(root, name, rtl, generics):
@@ -118,6 +120,34 @@ class Ecp5:
         return found
 
 
+class Ice40:
+    """nextpnr-ice40 and IceStorm."""
+
+    def __init__(self, board):
+        self.board = board
+        self.root = tools.root_of("trixie")
+
+    def route(self, name, seed):
+        work = f"{tools.WORK}/{name}"
+        return self.root.run("nextpnr-ice40", f"--{self.board['part']}", "--package", "sg48", "--json",
+                             f"{work}/netlist.json", "--pcf", f"{work}/{self.board['constraints']}", "--asc",
+                             f"{work}/routed.asc", "--report", f"{work}/report.json", "--freq",
+                             str(self.board["clock_hz"] / 1e6), "--seed", str(seed))
+
+    def pack(self, name):
+        self.root.run("icepack", f"{tools.WORK}/{name}/routed.asc", f"{tools.WORK}/{name}/{TOP}.bit")
+        if self.read_back(name) != ice.tiles_of((self.root.work / name / "routed.asc").read_text(encoding="utf-8")):
+            raise tools.Failed("the bitstream has other bits than were routed")
+
+    def read_back(self, name):
+        self.root.run("iceunpack", f"{tools.WORK}/{name}/{TOP}.bit", f"{tools.WORK}/{name}/read_back.asc")
+        return ice.tiles_of((self.root.work / name / "read_back.asc").read_text(encoding="utf-8"))
+
+    def pulls(self, name, pins):
+        pads, tiles = ice.pads_of(self.root, self.board["part"].removeprefix("up"), "sg48"), self.read_back(name)
+        return {port: pads.pull_of(pin, tiles) for port, (pin, _) in pins.items()}
+
+
 class Xc7:
     """nextpnr-himbaechel-xilinx and prjxray."""
 
@@ -165,7 +195,7 @@ def swapped(bitstream):
     return words.tobytes()
 
 
-FAMILIES = {"ecp5": Ecp5, "xc7": Xc7}
+FAMILIES = {"ecp5": Ecp5, "ice40": Ice40, "xc7": Xc7}
 
 
 def close_timing(family, name, clock_hz):

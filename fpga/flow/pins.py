@@ -16,6 +16,9 @@ def pins_of(file):
         found = re.findall(r"^set_property -dict \{PACKAGE_PIN (\w+) IOSTANDARD LVCMOS33([^}]*)\} \[get_ports (\w+)\]$",
                            text, re.MULTILINE)
         return {port: (pin, next(iter(re.findall(r"PULLTYPE (\w+)", rest)), "NONE")) for pin, rest, port in found}
+    if file.endswith(".pcf"):
+        found = re.findall(r"^set_io -pullup (yes|no) (\w+) (\w+)$", text, re.MULTILINE)
+        return {port: (pin, "PULLUP" if pull == "yes" else "NONE") for pull, port, pin in found}
     sites = dict(re.findall(r'^LOCATE COMP "(\w+)" SITE "(\w+)";$', text, re.MULTILINE))
     pulls = dict(re.findall(r'^IOBUF PORT "(\w+)" PULLMODE=(\w+) IO_TYPE=LVCMOS33\b[^;]*;$', text, re.MULTILINE))
     return {port: (site, PULLS[pulls[port]]) for port, site in sites.items()}

@@ -8,6 +8,7 @@ in the one way that the design uses it, and the open-drain pads, which become an
 
 import graphlib
 import hashlib
+import itertools
 import json
 import re
 import shutil
@@ -18,18 +19,21 @@ import build
 import tools
 
 TOP = "lens_sweep_top"
-CELLS = {"ecp5": "/usr/share/yosys/ecp5/cells_sim.v", "xc7": "/usr/share/yosys/xilinx/cells_sim.v"}
+CELLS = {"ecp5": "/usr/share/yosys/ecp5/cells_sim.v", "ice40": "/usr/share/yosys/ice40/cells_sim.v",
+         "xc7": "/usr/share/yosys/xilinx/cells_sim.v"}
 # How the block RAMs must be used for block_ram.v to be right
 RAM_MODES = {
     "DP16KD": {"DATA_WIDTH_A": 18, "DATA_WIDTH_B": 18, "REGMODE_A": "NOREG", "REGMODE_B": "NOREG",
                "WRITEMODE_A": "READBEFOREWRITE", "CSDECODE_A": "0b000", "CSDECODE_B": "0b000", "CLKAMUX": "CLKA",
                "CLKBMUX": "CLKB"},
+    "SB_RAM40_4K": {},
     "RAMB18E1": {"RAM_MODE": "TDP", "READ_WIDTH_A": 0, "READ_WIDTH_B": 18, "WRITE_WIDTH_A": 18, "WRITE_WIDTH_B": 0,
                  "DOA_REG": 0, "DOB_REG": 0, "WRITE_MODE_A": "READ_FIRST", "WRITE_MODE_B": "READ_FIRST"},
 }
 # Pins that must rest at this level
 RAM_PINS = {
     "DP16KD": {"CEA": "1", "WEB": "0", "RSTB": "0", **{f"CS{port}{bit}": "0" for port in "AB" for bit in range(3)}},
+    "SB_RAM40_4K": {"RE": "1", "WE": "1"},
     "RAMB18E1": {"RSTRAMB": "0", "WEBWE": "0"},
 }
 
@@ -49,13 +53,14 @@ def check_ram(name, cell):
         if set(pins[pin]) != {level}:
             raise tools.Failed(f"{name}: {pin} is not {level}, as its model has it")
     for parameter, value in parameters.items():
-        if re.fullmatch("INIT(P|VAL)?_[0-9A-F]{2}", parameter) and "1" in value:
+        if re.fullmatch("INIT(P|VAL)?_[0-9A-F]{1,2}", parameter) and "1" in value:
             raise tools.Failed(f"{name}: begins with {parameter} = {value}, its model with zeros")
 
 
 def model_rams(module):
     """Each block RAM becomes a block_ram."""
-    for name, cell in module["cells"].items():
+    fresh = fresh_nets(module)
+    for name, cell in list(module["cells"].items()):
         pins = cell["connections"]
         if cell["type"] not in RAM_MODES:
             continue
@@ -72,6 +77,17 @@ def model_rams(module):
                            "write_address": bus("ADA", 4, 13), "write_data": bus("DIA", 0, 17),
                            "read_clock": pins["CLKB"], "read": pins["CEB"], "read_address": bus("ADB", 4, 13),
                            "read_data": bus("DOB", 0, 17)}
+        elif cell["type"] == "SB_RAM40_4K":
+            # 256 words of 16 bits, or 512 of 8, which lie at the even bits of the data; a word is masked as a whole
+            modes = cell["parameters"]["READ_MODE"], cell["parameters"]["WRITE_MODE"]
+            if modes not in (("00", "00"), ("01", "01")) or len(set(pins["MASK"])) != 1:
+                raise tools.Failed(f"{name}: the modes {modes} or a mask of single bits have no model")
+            write = next(fresh)
+            module["cells"][f"{name}_write"] = gate("$_ANDNOT_", A=pins["WCLKE"][0], B=pins["MASK"][0], Y=write)
+            connections = {"write_clock": pins["WCLK"], "write": [write], "lanes": ["1", "1"],
+                           "write_address": pins["WADDR"][:10], "write_data": pins["WDATA"] + ["0", "0"],
+                           "read_clock": pins["RCLK"], "read": pins["RCLKE"], "read_address": pins["RADDR"][:10],
+                           "read_data": pins["RDATA"] + [next(fresh), next(fresh)]}
         else:
             connections = {"write_clock": pins["CLKARDCLK"], "write": pins["ENARDEN"], "lanes": pins["WEA"],
                            "write_address": pins["ADDRARDADDR"][4:], "write_data": lanes("DIADI", "DIPADIP"),
@@ -80,21 +96,25 @@ def model_rams(module):
         module["cells"][name] = made("block_ram", connections, ("read_data",))
 
 
+def fresh_nets(module):
+    """Numbers of nets that the module has not."""
+    return itertools.count(1 + max(bit for cell in module["cells"].values() for bits in cell["connections"].values()
+                                   for bit in bits if isinstance(bit, int)))
+
+
 def open_pads(module):
     """Each open-drain pad becomes an input, and an output NAME_pulled that says that the design pulls it."""
     cells, ports = module["cells"], module["ports"]
-    fresh = 1 + max(bit for cell in cells.values() for bits in cell["connections"].values() for bit in bits
-                    if isinstance(bit, int))
+    fresh = fresh_nets(module)
     pads = {port["bits"][0]: name for name, port in ports.items() if port["direction"] == "inout"}
     for name, cell in list(cells.items()):
         pins = {pin: bits[0] for pin, bits in cell["connections"].items()}
         if cell["type"] == "$_TBUF_":
             pad, data, low = pads.pop(pins["Y"]), pins["A"], pins["E"]
         elif cell["type"] == "IOBUF":
-            pad, data, low = pads.pop(pins["IO"]), pins["I"], fresh
-            cells[f"{name}_not"] = gate("$_NOT_", A=pins["T"], Y=fresh)
+            pad, data, low = pads.pop(pins["IO"]), pins["I"], next(fresh)
+            cells[f"{name}_not"] = gate("$_NOT_", A=pins["T"], Y=low)
             cells[f"{name}_in"] = gate("$_BUF_", A=pins["IO"], Y=pins["O"])
-            fresh += 1
         else:
             continue
         if data != "0":

@@ -23,7 +23,8 @@ ROOTS = Path(os.environ.get("FPGA_TOOLS", CACHE / "gst-plugins-dff" / "fpga-tool
 WORK = "/work-" + hashlib.sha256(str(FPGA).encode()).hexdigest()[:8]
 # Large files of other parts
 UNUSED = ("usr/share/nextpnr/himbaechel/xilinx/chipdb-xc7[as]*", "usr/share/prjxray/database/[aks]*", "usr/share/doc",
-          "usr/share/man", "usr/share/trellis/database/Mach*")
+          "usr/share/man", "usr/share/trellis/database/Mach*", "usr/share/nextpnr/ice40/chipdb-[138u]*",
+          "usr/share/nextpnr/ecp5/chipdb-45k.bin")
 KEYS = "/usr/share/keyrings/debian-archive-keyring.gpg"
 DOWNLOAD_LIMIT_S = 900
 # ldconfig has not run in a root, and libtrellis lies in a folder of its own

@@ -15,7 +15,7 @@ from words import BIT, WORD, errors_of
 
 CLOCK_HZ = int(os.environ.get("BENCH_CLOCK_HZ", 8_000_000))
 SCALE = int(os.environ.get("BENCH_SCALE", 1))
-CLOCK_PS = 10**12 // CLOCK_HZ
+CLOCK_PS = 10**12 // CLOCK_HZ // 2 * 2
 TICK_CYCLES = CLOCK_HZ // (1_000_000 * SCALE)
 BIT_CYCLES = -(-CLOCK_HZ // (400_000 * SCALE))
 

@@ -37,7 +37,8 @@ end entity lens_sweep_bench;
 
 architecture bench of lens_sweep_bench is
 
-  constant HALF_PERIOD : time := 1 sec / CLOCK_HZ / 2;
+  -- Whole picoseconds, as the benches count
+  constant HALF_PERIOD : time := 1 sec / CLOCK_HZ / 2 / 1 ps * 1 ps;
 
   signal clk          : std_ulogic := '0';
   signal host_scl_pin : std_logic;

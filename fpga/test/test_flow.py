@@ -11,6 +11,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "flow"))
 import build  # noqa: E402
+import ice  # noqa: E402
 import simulate  # noqa: E402
 import tools  # noqa: E402
 import xray  # noqa: E402
@@ -62,6 +63,38 @@ def test_error_correction_is_no_bit_of_the_design():
 @pytest.mark.parametrize("bits, pull", [(set(), "PULLDOWN"), ({1}, "NONE"), ({1, 2}, "PULLUP"), ({2}, "unclear []")])
 def test_pull_is_read_from_the_bits(part, bits, pull):
     assert part.pull_of("A1", {(0x200, 4, bit) for bit in bits}) == pull
+
+
+CONFIGURATION = """.comment made by hand
+.device 5k
+.io_tile 3 0
+000000
+000100
+000000
+
+.io_tile 4 0
+000000
+000000
+
+.logic_tile 1 1
+010
+.sym 2 name
+"""
+
+
+def test_tiles_without_a_bit_are_left_out_of_a_configuration():
+    assert ice.tiles_of(CONFIGURATION) == {("io_tile", 3, 0): ["000000", "000100", "000000"],
+                                           ("logic_tile", 1, 1): ["010"]}
+
+
+def test_pull_of_an_ice40_pin_is_a_bit_of_another_tile_that_switches_it_off(tmp_path):
+    (tmp_path / "icebox.py").write_text('pinloc_db = {"5k-sg48": [("2", 8, 0, 0), ("3", 9, 0, 1)]}\n'
+                                        'ieren_db = {"5k": [(8, 0, 0, 3, 0, 1), (9, 0, 1, 4, 0, 0)]}\n')
+    pads = ice.Pads(tmp_path, "5k", "sg48")
+    tiles = ice.tiles_of(CONFIGURATION)
+    assert (pads.pull_of("2", tiles), pads.pull_of("3", tiles)) == ("NONE", "PULLUP")
+    with pytest.raises(KeyError):
+        pads.pull_of("35", tiles)
 
 
 def test_linux_gets_words_with_the_low_byte_first():
@@ -130,6 +163,31 @@ def test_block_ram_in_a_mode_without_a_model_is_refused():
     for change in ({"WRITE_MODE_A": "WRITE_FIRST"}, {"READ_WIDTH_B": format(9, "032b")}, {"INIT_0A": "0001"}):
         with pytest.raises(tools.Failed):
             simulate.check_ram("ram", cell | {"parameters": parameters | change})
+
+
+def ice40_ram(**changes):
+    parameters = {"READ_MODE": "00", "WRITE_MODE": "00", "INIT_0": "0" * 256}
+    pins = {"RE": ["1"], "WE": ["1"], "RCLK": [2], "WCLK": [2], "RCLKE": [3], "WCLKE": [4], "MASK": [5] * 16,
+            "RADDR": [*range(10, 21)], "WADDR": [*range(30, 41)], "RDATA": [*range(50, 66)], "WDATA": [*range(70, 86)]}
+    cell = {"type": "SB_RAM40_4K", "parameters": {name: changes.get(name, value) for name, value in parameters.items()},
+            "connections": {name: changes.get(name, value) for name, value in pins.items()}}
+    return {"cells": {"ram": cell}}
+
+
+def test_block_ram_of_an_ice40_writes_where_it_is_not_masked():
+    module = ice40_ram()
+    simulate.model_rams(module)
+    ram, write = module["cells"]["ram"]["connections"], module["cells"]["ram_write"]
+    assert write["type"] == "$_ANDNOT_" and write["connections"] == {"A": [4], "B": [5], "Y": ram["write"]}
+    assert (ram["read"], ram["read_data"][:16], ram["write_address"]) == ([3], [*range(50, 66)], [*range(30, 40)])
+    assert len({*ram["read_data"], *ram["write"]}) == 19, "a net has two drivers"
+
+
+@pytest.mark.parametrize("changes", [{"MASK": [5] * 15 + [6]}, {"READ_MODE": "10", "WRITE_MODE": "10"},
+                                     {"READ_MODE": "01"}, {"INIT_0": "1" * 256}, {"WE": [7]}])
+def test_block_ram_of_an_ice40_without_a_model_is_refused(changes):
+    with pytest.raises(tools.Failed):
+        simulate.model_rams(ice40_ram(**changes))
 
 
 def gates(tmp_path, extra=()):
