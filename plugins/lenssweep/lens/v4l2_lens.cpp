@@ -147,7 +147,8 @@ void V4l2Lens::stop()
 void V4l2Lens::move_to(unsigned plane)
 {
     if (!set(V4L2_CID_FOCUS_ABSOLUTE, static_cast<std::int32_t>(positions_.at(plane)))) {
-        throw LensError("cannot move the lens of " + device_ + ": " + reason());
+        throw LensError(errno == ENODEV ? device_ + " was unplugged in mid-sweep"
+                                        : "cannot move the lens of " + device_ + ": " + reason());
     }
 }
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "lens/found_lenses.h"
 #include "rig.h"
 #include "support.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 #include <map>
@@ -113,6 +115,42 @@ TEST(StepMode, bus_that_does_not_answer_ends_in_an_error_and_may_come_back)
     EXPECT_TRUE(pipeline.pull("out")) << "it is back again";
 }
 
+/* The lens of vimc is a driver's device, which its driver can be taken from, and given to again. */
+TEST(StepMode, a_lens_that_is_unplugged_in_mid_sweep_ends_in_an_error_and_may_come_back)
+{
+    const auto found = [] {
+        for (const dff::FoundLens &lens : dff::find_lenses(dff::this_machine()))
+            if (lens.kind == dff::FoundLens::Kind::Subdevice)
+                return lens.device;
+        return std::string();
+    };
+    const std::string before = found();
+    ASSERT_NE(before, "");
+    Pipeline pipeline("videotestsrc is-live=true ! video/x-raw,width=64,height=64,framerate=30/1 ! "
+                      "lenssweeptag name=tag mode=step settle-frames=0 planes=3 near=2 far=0 lens=v4l2:" +
+                      before + " ! appsink name=out max-buffers=100");
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    for (unsigned frame = 0; frame < 4; ++frame) {
+        const Sample sample = pipeline.pull("out");
+        ASSERT_TRUE(sample) << pipeline.wait();
+        EXPECT_EQ(focus_of(sample)->plane, frame % 3);
+    }
+    const std::string driver = "/sys/bus/platform/drivers/vimc/";
+    ASSERT_TRUE(std::filesystem::exists(driver + "vimc.0"));
+    rig::write_file(driver + "unbind", "vimc.0");
+    const std::string error = pipeline.wait();
+    EXPECT_NE(error.find(before + " was unplugged"), std::string::npos) << error;
+    pipeline.set_state(GST_STATE_NULL);
+    EXPECT_EQ(found(), "");
+
+    rig::write_file(driver + "bind", "vimc.0");
+    const std::string after = found();
+    ASSERT_NE(after, "");
+    g_object_set(pipeline.element("tag"), "lens", ("v4l2:" + after).c_str(), nullptr);
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    EXPECT_TRUE(pipeline.pull("out")) << "it is back again";
+}
+
 TEST(SyncMode, frames_are_labelled_by_the_edges_of_the_line)
 {
     constexpr guint64 planes = 3;
@@ -154,7 +192,7 @@ TEST(SyncMode, frames_are_labelled_by_the_edges_of_the_line)
     EXPECT_EQ(count_of(tag, "labelled") + count_of(tag, "dropped"), 30U);
 }
 
-TEST(SyncMode, sequencer_that_stops_by_itself_ends_in_an_error)
+TEST(SyncMode, sequencer_that_does_not_answer_ends_in_an_error_and_may_come_back)
 {
     Pipeline pipeline(
         "videotestsrc is-live=true ! video/x-raw,width=64,height=64,framerate=100/1 ! lenssweeptag mode=sync "
@@ -166,4 +204,11 @@ TEST(SyncMode, sequencer_that_stops_by_itself_ends_in_an_error)
     const std::string error = pipeline.wait();
     rig::fail_i2c_transfers(0);
     EXPECT_NE(error.find("sweep has stopped"), std::string::npos) << error;
+    pipeline.set_state(GST_STATE_NULL);
+
+    rig::empty_i2c_log();
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    std::this_thread::sleep_for(std::chrono::milliseconds{500});
+    const auto log = rig::i2c_log();
+    EXPECT_NE(std::find(log.begin(), log.end(), "3c 0c=0001"), log.end()) << "no table was committed again";
 }
