@@ -19,6 +19,11 @@
  * has a magnification of 1 at plane planes / 2, onto which focalstackalign aligns. Put a queue behind each
  * pad.
  *
+ * The request pad `motion` gives the true motion of what each pixel shows at the same time: RGBA64_LE, R and
+ * G are 32768 + 64 times the pixels that it moves to the right and down from plane to plane (as the KITTI
+ * data set has flow), B and A are 65535. The whole scene moves with `pan` and `shake`, `objects` fly before
+ * it with `motion`; `frozen=true` shows the same sweeps as if each had been taken in no time.
+ *
  * scene=board shows a chessboard to calibrate by, in a pose that is known: see dff-calibrate.
  *
  * ## Example launch lines
@@ -28,6 +33,10 @@
  * |[
  * gst-launch-1.0 lenssweeptestsrc name=rig num-buffers=60 noise=moderate ! queue ! fakesink \
  *     rig.depth ! queue ! fakesink
+ * ]|
+ * |[
+ * gst-launch-1.0 lenssweeptestsrc name=rig num-buffers=60 motion=4 objects=ball+crossing pan=1 ! queue ! \
+ *     fakesink  rig.motion ! queue ! fakesink
  * ]|
  */
 #include "lenssweeptestsrc.h"
@@ -44,11 +53,14 @@ GST_DEBUG_CATEGORY(gst_lens_sweep_test_src_debug);
 
 #define VIDEO_CAPS GST_VIDEO_CAPS_MAKE("{ I420, GRAY8, GRAY16_LE, NV12, RGB, BGR, RGBx, BGRx, RGBA64_LE }")
 #define DEPTH_CAPS GST_VIDEO_CAPS_MAKE("GRAY16_LE")
+#define MOTION_CAPS GST_VIDEO_CAPS_MAKE("RGBA64_LE")
 
 static GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(VIDEO_CAPS));
 static GstStaticPadTemplate depth_template =
     GST_STATIC_PAD_TEMPLATE("depth", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(DEPTH_CAPS));
+static GstStaticPadTemplate motion_template =
+    GST_STATIC_PAD_TEMPLATE("motion", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MOTION_CAPS));
 
 G_DEFINE_FINAL_TYPE(GstLensSweepTestSrc, gst_lens_sweep_test_src, GST_TYPE_ELEMENT)
 GST_ELEMENT_REGISTER_DEFINE_WITH_CODE(lenssweeptestsrc, "lenssweeptestsrc", GST_RANK_NONE,
@@ -151,15 +163,19 @@ static gboolean send_event(GstElement *element, GstEvent *event)
 static GstPad *request_new_pad(GstElement *element, GstPadTemplate *templ, const gchar *, const GstCaps *)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(element);
-    g_autoptr(GstPad) existing = gst_lens_sweep_test_src_ref_depth_pad(self);
+    const gchar *name = GST_PAD_TEMPLATE_NAME_TEMPLATE(templ);
+    GstPad *GstLensSweepTestSrcState::*which = g_str_equal(name, "motion")
+                                                   ? &GstLensSweepTestSrcState::motion_pad
+                                                   : &GstLensSweepTestSrcState::depth_pad;
+    g_autoptr(GstPad) existing = gst_lens_sweep_test_src_ref_pad(self, which);
     if (existing) {
-        GST_WARNING_OBJECT(self, "there is one depth pad only; put a tee behind it");
+        GST_WARNING_OBJECT(self, "there is one %s pad only; put a tee behind it", name);
         return nullptr;
     }
-    GstPad *pad = gst_pad_new_from_template(templ, "depth");
+    GstPad *pad = gst_pad_new_from_template(templ, name);
     gst_pad_set_query_function(pad, query);
     GST_OBJECT_LOCK(self);
-    self->state->depth_pad = pad;
+    self->state->*which = pad;
     GST_OBJECT_UNLOCK(self);
     gst_element_add_pad(element, pad);
     return pad;
@@ -169,7 +185,8 @@ static void release_pad(GstElement *element, GstPad *pad)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(element);
     GST_OBJECT_LOCK(self);
-    self->state->depth_pad = nullptr;
+    GstPad *&known = pad == self->state->motion_pad ? self->state->motion_pad : self->state->depth_pad;
+    known = nullptr;
     GST_OBJECT_UNLOCK(self);
     gst_pad_set_active(pad, FALSE);
     gst_element_remove_pad(element, pad);
@@ -228,8 +245,10 @@ static void gst_lens_sweep_test_src_class_init(GstLensSweepTestSrcClass *klass)
     element_class->release_pad = release_pad;
     gst_element_class_add_static_pad_template(element_class, &src_template);
     gst_element_class_add_static_pad_template(element_class, &depth_template);
+    gst_element_class_add_static_pad_template(element_class, &motion_template);
     gst_element_class_set_static_metadata(element_class, "Focus sweep test source", "Source/Video",
                                           "Renders a scene as a camera with a swept focus sees it",
                                           "the gst-plugins-dff authors");
     gst_type_mark_as_plugin_api(GST_TYPE_LENS_SWEEP_TEST_SCENE, static_cast<GstPluginAPIFlags>(0));
+    gst_type_mark_as_plugin_api(GST_TYPE_LENS_SWEEP_TEST_OBJECTS, static_cast<GstPluginAPIFlags>(0));
 }

@@ -115,28 +115,52 @@ static GstFlowReturn render(GstLensSweepTestSrc *self)
     return GST_FLOW_OK;
 }
 
-static void begin_depth(GstLensSweepTestSrc *self, GstPad *pad)
+namespace {
+
+/* What is told on one of the pads of the truth. */
+struct Truth {
+    const gchar *name;
+    GstPad *GstLensSweepTestSrcState::*pad;
+    GstCaps *(TestStream::*caps)() const;
+    GstBuffer *(TestStream::*buffer)() const;
+};
+
+constexpr Truth truths[] = {
+    {"depth", &GstLensSweepTestSrcState::depth_pad, &TestStream::depth_caps, &TestStream::depth},
+    {"motion", &GstLensSweepTestSrcState::motion_pad, &TestStream::motion_caps, &TestStream::motion},
+};
+
+} // namespace
+
+static void begin_truth(GstLensSweepTestSrc *self, const Truth &truth, GstPad *pad)
 {
-    begin_stream(GST_ELEMENT(self), pad, "depth", group_of(self->src_pad));
+    begin_stream(GST_ELEMENT(self), pad, truth.name, group_of(self->src_pad));
     if (gst_pad_has_current_caps(self->src_pad)) {
-        g_autoptr(GstCaps) caps = self->state->stream->depth_caps();
+        g_autoptr(GstCaps) caps = (self->state->stream.get()->*truth.caps)();
         change_caps(pad, caps);
     }
     begin_segment(pad);
 }
 
-/* Whoever does not take the depth any more does not stop the pictures. */
-static GstFlowReturn push_depth(GstLensSweepTestSrc *self, GstPad *pad)
+/* Whoever does not take the truth any more does not stop the pictures. */
+static GstFlowReturn push_truth(GstLensSweepTestSrc *self)
 {
-    begin_depth(self, pad);
-    const GstFlowReturn flow = gst_pad_push(pad, self->state->stream->depth());
-    return flow == GST_FLOW_NOT_NEGOTIATED || flow <= GST_FLOW_ERROR ? flow : GST_FLOW_OK;
+    for (const Truth &truth : truths) {
+        g_autoptr(GstPad) pad = gst_lens_sweep_test_src_ref_pad(self, truth.pad);
+        if (!pad)
+            continue;
+        begin_truth(self, truth, pad);
+        const GstFlowReturn flow = gst_pad_push(pad, (self->state->stream.get()->*truth.buffer)());
+        if (flow == GST_FLOW_NOT_NEGOTIATED || flow <= GST_FLOW_ERROR)
+            return flow;
+    }
+    return GST_FLOW_OK;
 }
 
-GstPad *gst_lens_sweep_test_src_ref_depth_pad(GstLensSweepTestSrc *self)
+GstPad *gst_lens_sweep_test_src_ref_pad(GstLensSweepTestSrc *self, GstPad *GstLensSweepTestSrcState::*which)
 {
     GST_OBJECT_LOCK(self);
-    GstPad *pad = self->state->depth_pad;
+    GstPad *pad = self->state->*which;
     if (pad)
         gst_object_ref(pad);
     GST_OBJECT_UNLOCK(self);
@@ -190,10 +214,8 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
     const GstClockTime end = GST_BUFFER_PTS(buffer) + GST_BUFFER_DURATION(buffer);
     if (stream.is_live() && !pacer.wait_until(GST_ELEMENT(self), end))
         return GST_FLOW_FLUSHING;
-    g_autoptr(GstPad) depth_pad =
-        stream.at_sweep_start() ? gst_lens_sweep_test_src_ref_depth_pad(self) : nullptr;
-    if (depth_pad)
-        flow = push_depth(self, depth_pad);
+    if (stream.at_sweep_start())
+        flow = push_truth(self);
     stream.advance();
     return flow == GST_FLOW_OK
                ? gst_pad_push(self->src_pad, static_cast<GstBuffer *>(g_steal_pointer(&buffer)))
@@ -202,10 +224,12 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
 
 static void end_streams(GstLensSweepTestSrc *self)
 {
-    g_autoptr(GstPad) depth_pad = gst_lens_sweep_test_src_ref_depth_pad(self);
-    if (depth_pad) {
-        begin_depth(self, depth_pad);
-        gst_pad_push_event(depth_pad, gst_event_new_eos());
+    for (const Truth &truth : truths) {
+        g_autoptr(GstPad) pad = gst_lens_sweep_test_src_ref_pad(self, truth.pad);
+        if (!pad)
+            continue;
+        begin_truth(self, truth, pad);
+        gst_pad_push_event(pad, gst_event_new_eos());
     }
     gst_pad_push_event(self->src_pad, gst_event_new_eos());
 }

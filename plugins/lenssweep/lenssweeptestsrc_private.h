@@ -23,6 +23,7 @@ struct GstLensSweepTestSrcState {
     bool eos_wanted = false;
     std::stop_source stop; /* of the rendering */
     GstPad *depth_pad = nullptr;
+    GstPad *motion_pad = nullptr;
 
     LivePacer pacer; /* guards itself */
 
@@ -37,8 +38,8 @@ struct _GstLensSweepTestSrc {
     GstLensSweepTestSrcState *state;
 };
 
-/* The depth pad, if there is one; a reference. */
-GstPad *gst_lens_sweep_test_src_ref_depth_pad(GstLensSweepTestSrc *self);
+/* One of the pads of the truth, if there is one; a reference. */
+GstPad *gst_lens_sweep_test_src_ref_pad(GstLensSweepTestSrc *self, GstPad *GstLensSweepTestSrcState::*which);
 
 /* GstTaskFunction of the src pad: one frame. */
 void gst_lens_sweep_test_src_loop(gpointer self);

@@ -2,13 +2,27 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "simulated_sweep.h"
 
+#include <algorithm>
 #include <utility>
+
+namespace {
+
+/* As the KITTI data set has flow, with 16 bits a channel. */
+cv::Vec4w motion_pixel(const cv::Vec2f &velocity)
+{
+    const auto code = [](float pixels) { return cv::saturate_cast<uint16_t>(32768.0F + 64.0F * pixels); };
+    return {code(velocity[0]), code(velocity[1]), G_MAXUINT16, G_MAXUINT16};
+}
+
+} // namespace
 
 SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info, bool steady_light,
                                const std::stop_token &stop, const Progress &progress)
     : camera_(std::move(camera)), converter_(info)
 {
     gst_video_info_set_format(&depth_info_, GST_VIDEO_FORMAT_GRAY16_LE, GST_VIDEO_INFO_WIDTH(&info),
+                              GST_VIDEO_INFO_HEIGHT(&info));
+    gst_video_info_set_format(&motion_info_, GST_VIDEO_FORMAT_RGBA64_LE, GST_VIDEO_INFO_WIDTH(&info),
                               GST_VIDEO_INFO_HEIGHT(&info));
     const unsigned planes = camera_.plan().planes();
     const bool repeats = steady_light && !camera_.has_motion() && !camera_.noisy();
@@ -26,12 +40,7 @@ SimulatedSweep::SimulatedSweep(dff::SweptCamera camera, const GstVideoInfo &info
 
 GstBuffer *SimulatedSweep::new_frame(guint64 sweep, guint plane, double gain) const
 {
-    cv::Mat3f exposed = exposed_[plane];
-    if (camera_.has_motion()) {
-        exposed = exposed.clone();
-        const dff::PicturePatch patch = camera_.expose_motion(sweep, plane);
-        patch.values.copyTo(exposed(patch.where));
-    }
+    const cv::Mat3f exposed = camera_.seen(exposed_[plane], sweep, plane);
     const cv::Mat3f lit = gain == 1.0 ? exposed : cv::Mat3f(exposed * gain);
     return converter_.convert(camera_.digitise(lit, plane, sweep));
 }
@@ -39,6 +48,14 @@ GstBuffer *SimulatedSweep::new_frame(guint64 sweep, guint plane, double gain) co
 GstBuffer *SimulatedSweep::make_depth(guint64 sweep) const
 {
     return copy_to_buffer(camera_.depth_map(sweep), depth_info_);
+}
+
+GstBuffer *SimulatedSweep::motion(guint64 sweep) const
+{
+    const cv::Mat2f velocity = camera_.motion_map(sweep);
+    cv::Mat_<cv::Vec4w> picture(velocity.size());
+    std::transform(velocity.begin(), velocity.end(), picture.begin(), motion_pixel);
+    return copy_to_buffer(picture, motion_info_);
 }
 
 GstBuffer *SimulatedSweep::frame(guint64 sweep, guint plane, double gain) const

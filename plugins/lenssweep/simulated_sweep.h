@@ -30,6 +30,10 @@ public:
     /* The true depth, GRAY16_LE. */
     GstBuffer *depth(guint64 sweep) const;
 
+    /* The true motion, RGBA64_LE: R and G are 32768 + 64 times the pixels a plane to the right and down, B
+     * and A are white. */
+    GstBuffer *motion(guint64 sweep) const;
+
 private:
     struct BufferUnref {
         void operator()(GstBuffer *buffer) const { gst_buffer_unref(buffer); }
@@ -41,7 +45,7 @@ private:
 
     dff::SweptCamera camera_;
     PictureConverter converter_;
-    GstVideoInfo depth_info_;
+    GstVideoInfo depth_info_, motion_info_;
     /* Plane after plane: buffers if every sweep is the same, else what each frame begins with. */
     std::vector<Buffer> frames_;
     std::vector<cv::Mat3f> exposed_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace {
 
@@ -60,6 +61,16 @@ dff::CameraCalibration camera_of(const std::string &file, cv::Size size)
             .cy = (size.height - 1) / 2.0};
 }
 
+dff::Scene upside_down(const dff::Scene &scene)
+{
+    dff::Scene turned;
+    cv::rotate(scene.color, turned.color, cv::ROTATE_180);
+    cv::rotate(scene.depth, turned.depth, cv::ROTATE_180);
+    if (!scene.known.empty())
+        cv::rotate(scene.known, turned.known, cv::ROTATE_180);
+    return turned;
+}
+
 } // namespace
 
 GType gst_lens_sweep_test_scene_get_type()
@@ -72,6 +83,21 @@ GType gst_lens_sweep_test_scene_get_type()
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstLensSweepTestScene", values);
+    return type;
+}
+
+GType gst_lens_sweep_test_objects_get_type()
+{
+    using dff::MovingKind;
+    static const GFlagsValue values[] = {
+        {static_cast<guint>(MovingKind::Ball), "A ball that flies to the right", "ball"},
+        {static_cast<guint>(MovingKind::Crossing), "A ball behind it that comes the other way", "crossing"},
+        {static_cast<guint>(MovingKind::Turning), "A block that turns while it flies", "turning"},
+        {static_cast<guint>(MovingKind::Nearing), "A ball that comes nearer while it flies", "nearing"},
+        {static_cast<guint>(MovingKind::Plain), "A disk without texture", "plain"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_flags_register_static("GstLensSweepTestObjects", values);
     return type;
 }
 
@@ -109,8 +135,8 @@ dff::Scene TestScene::make(const dff::SweepPlan &plan, cv::Size size, const std:
     }
 }
 
-dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
-                                   const std::stop_token &stop) const
+dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop,
+                                   bool turned) const
 {
     check();
     const gdouble step = blur_step == blur_of_sweep
@@ -120,9 +146,16 @@ dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size,
                                             .blur_step = step,
                                             .noise = parse_noise(noise),
                                             .motion = motion,
+                                            .objects = objects,
+                                            .frozen = frozen != FALSE,
+                                            .pan = pan,
+                                            .shake = shake,
                                             .breathing = breathing,
                                             .field_curvature = field_curvature,
                                             .jitter = jitter,
                                             .seed = seed};
-    return {make(plan, size, stop), settings, stop};
+    dff::Scene seen = make(plan, size, stop);
+    if (turned)
+        seen = upside_down(seen);
+    return {std::move(seen), settings, stop};
 }

@@ -20,6 +20,10 @@ enum GstLensSweepTestScene {
 #define GST_TYPE_LENS_SWEEP_TEST_SCENE (gst_lens_sweep_test_scene_get_type())
 GType gst_lens_sweep_test_scene_get_type();
 
+/* Bits of dff::MovingKind. */
+#define GST_TYPE_LENS_SWEEP_TEST_OBJECTS (gst_lens_sweep_test_objects_get_type())
+GType gst_lens_sweep_test_objects_get_type();
+
 /* A blur-step by which the whole sweep has 10 pixels, but no plane more than 2. */
 constexpr gdouble blur_of_sweep = -1.0;
 
@@ -34,11 +38,16 @@ struct TestScene {
     gdouble blur_step = blur_of_sweep; /* pixels from plane to plane */
     std::string noise = "none";
     gdouble motion = 0.0;
+    guint objects = static_cast<guint>(dff::MovingKind::Ball); /* GstLensSweepTestObjects */
+    gboolean frozen = FALSE;
+    gdouble pan = 0.0;
+    gdouble shake = 0.0;
     gdouble breathing = 0.0;
     gdouble field_curvature = 0.0;
     gdouble jitter = 0.0;
     gdouble flicker = 0.0;
     guint light_switch = 0;
+    guint cut = 0;
     guint64 seed = 0;
 
     dff::SceneLight light() const { return {.flicker = flicker, .switch_frames = light_switch}; }
@@ -52,8 +61,12 @@ struct TestScene {
     /* The size of the image, or nothing for scenes that are made at any size; throws if it cannot be read. */
     std::optional<cv::Size> natural_size() const;
 
+    /* Whether a frame shows the scene turned upside down. */
+    bool is_turned(guint64 frame) const { return cut > 0 && frame / cut % 2 == 1; }
+
     /* Throws like check(), and if a file cannot be read. Unusable where `stop` was requested. */
-    dff::SweptCamera camera(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const;
+    dff::SweptCamera camera(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop,
+                            bool turned = false) const;
 
 private:
     dff::Scene make(const dff::SweepPlan &plan, cv::Size size, const std::stop_token &stop) const;

@@ -27,6 +27,11 @@ enum {
     PROP_POSE,
     PROP_CALIBRATION,
     PROP_FIELD_CURVATURE,
+    PROP_OBJECTS,
+    PROP_FROZEN,
+    PROP_PAN,
+    PROP_SHAKE,
+    PROP_CUT,
 };
 
 void set_string(std::string &target, const GValue *value)
@@ -84,6 +89,21 @@ bool set_scene_property(TestScene &scene, guint id, const GValue *value)
     case PROP_LIGHT_SWITCH:
         scene.light_switch = g_value_get_uint(value);
         return true;
+    case PROP_OBJECTS:
+        scene.objects = g_value_get_flags(value);
+        return true;
+    case PROP_FROZEN:
+        scene.frozen = g_value_get_boolean(value);
+        return true;
+    case PROP_PAN:
+        scene.pan = g_value_get_double(value);
+        return true;
+    case PROP_SHAKE:
+        scene.shake = g_value_get_double(value);
+        return true;
+    case PROP_CUT:
+        scene.cut = g_value_get_uint(value);
+        return true;
     default:
         return false;
     }
@@ -137,6 +157,21 @@ bool get_scene_property(const TestScene &scene, guint id, GValue *value)
     case PROP_LIGHT_SWITCH:
         g_value_set_uint(value, scene.light_switch);
         return true;
+    case PROP_OBJECTS:
+        g_value_set_flags(value, scene.objects);
+        return true;
+    case PROP_FROZEN:
+        g_value_set_boolean(value, scene.frozen);
+        return true;
+    case PROP_PAN:
+        g_value_set_double(value, scene.pan);
+        return true;
+    case PROP_SHAKE:
+        g_value_set_double(value, scene.shake);
+        return true;
+    case PROP_CUT:
+        g_value_set_uint(value, scene.cut);
+        return true;
     default:
         return false;
     }
@@ -176,6 +211,46 @@ bool get_test_property(const TestSettings &settings, guint id, GValue *value)
     default:
         return get_scene_property(settings.scene, id, value) || get_sweep_property(settings.sweep, id, value);
     }
+}
+
+static void install_motion_properties(GObjectClass *klass, const TestScene &defaults)
+{
+    constexpr auto playing =
+        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+    const auto install = [klass](guint id, GParamSpec *spec) {
+        g_object_class_install_property(klass, id, spec);
+    };
+    const auto install_range = [&](guint id, GParamSpec *spec) { install(id, dff::checked_at_start(spec)); };
+    install_range(
+        PROP_MOTION,
+        g_param_spec_double("motion", "Motion",
+                            "Pixels that the objects, which fly from side to side before the scene, move "
+                            "from plane to plane (negative: they begin on the other side); 0: there are none",
+                            -1000.0, 1000.0, defaults.motion, playing));
+    install(PROP_OBJECTS, g_param_spec_flags("objects", "Objects", "What flies before the scene, with motion",
+                                             GST_TYPE_LENS_SWEEP_TEST_OBJECTS, defaults.objects, playing));
+    install_range(PROP_PAN,
+                  g_param_spec_double("pan", "Pan",
+                                      "Pixels that the camera turns to the right by from plane to plane; "
+                                      "beyond its borders the scene goes on as its mirror image",
+                                      -1000.0, 1000.0, defaults.pan, playing));
+    install_range(
+        PROP_SHAKE,
+        g_param_spec_double("shake", "Shake",
+                            "Root mean square of the camera's shake along x and y, in pixels: smooth waves "
+                            "of 15 to 40 planes, as of a hand, that go on from sweep to sweep",
+                            0.0, 100.0, defaults.shake, playing));
+    install(PROP_FROZEN,
+            g_param_spec_boolean("frozen", "Frozen",
+                                 "Objects and camera stand still while a sweep is taken, where they are in "
+                                 "the middle of it: what motion compensation is measured by",
+                                 defaults.frozen, playing));
+    install_range(
+        PROP_CUT,
+        g_param_spec_uint("cut", "Cut",
+                          "Frames after which the scene is shown upside down, and after as many again as "
+                          "before; 0: there is no cut",
+                          0, G_MAXUINT, defaults.cut, playing));
 }
 
 static void install_board_properties(GObjectClass *klass, const TestScene &defaults)
@@ -250,12 +325,6 @@ void install_test_properties(GObjectClass *klass)
                                 "GAIN,READ for the variance GAIN * value + READ^2 of 8-bit values",
                                 defaults.scene.noise.c_str(), playing));
     install_range(
-        PROP_MOTION,
-        g_param_spec_double("motion", "Motion",
-                            "Pixels that a ball, which flies from side to side before the scene, moves from "
-                            "plane to plane (negative: begins on the right); 0: there is no ball",
-                            -1000.0, 1000.0, defaults.scene.motion, playing));
-    install_range(
         PROP_BREATHING,
         g_param_spec_double(
             "breathing", "Breathing",
@@ -286,5 +355,6 @@ void install_test_properties(GObjectClass *klass)
                   g_param_spec_int("num-buffers", "Number of buffers",
                                    "Frames to send before the end of the stream; -1 is no end", -1, G_MAXINT,
                                    defaults.num_buffers, ready));
+    install_motion_properties(klass, defaults.scene);
     install_board_properties(klass, defaults.scene);
 }

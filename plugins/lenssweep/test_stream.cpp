@@ -94,6 +94,7 @@ void TestStream::set_format(const GstVideoInfo &info)
         return;
     info_ = info;
     pictures_.reset();
+    turned_.reset();
 }
 
 void TestStream::set_scene(const TestScene &scene)
@@ -102,15 +103,32 @@ void TestStream::set_scene(const TestScene &scene)
         return;
     settings_.scene = scene;
     pictures_.reset();
+    turned_.reset();
 }
 
 void TestStream::render(const std::stop_token &stop, const SimulatedSweep::Progress &progress)
 {
     const cv::Size size(GST_VIDEO_INFO_WIDTH(&info_), GST_VIDEO_INFO_HEIGHT(&info_));
-    auto pictures = std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop), info_,
-                                                     settings_.scene.light().steady(), stop, progress);
+    const auto rendered = [&](bool turned) {
+        return std::make_unique<SimulatedSweep>(settings_.scene.camera(plan_, size, stop, turned), info_,
+                                                settings_.scene.light().steady(), stop, progress);
+    };
+    auto pictures = rendered(false);
+    if (settings_.scene.cut > 0)
+        turned_ = rendered(true);
     if (!stop.stop_requested())
         pictures_ = std::move(pictures);
+}
+
+const SimulatedSweep &TestStream::shown(guint64 frame) const
+{
+    return settings_.scene.is_turned(frame) ? *turned_ : *pictures_;
+}
+
+/* What the truth is told of, where a cut falls into the sweep. */
+const SimulatedSweep &TestStream::shown_in_middle() const
+{
+    return shown(frame_ + (plan_.planes() - 1) / 2);
 }
 
 void TestStream::postpone(GstClockTime time)
@@ -127,7 +145,7 @@ GstBuffer *TestStream::frame() const
     const double gain =
         settings_.scene.light().gain(frame_, static_cast<double>(time_of(frame_)) / GST_SECOND,
                                      static_cast<double>(exposure) / GST_SECOND);
-    GstBuffer *buffer = pictures_->frame(sweep(), plane(), gain);
+    GstBuffer *buffer = shown(frame_).frame(sweep(), plane(), gain);
     GST_BUFFER_PTS(buffer) = time_of(frame_);
     GST_BUFFER_DURATION(buffer) = time_of(frame_ + 1) - time_of(frame_);
     GST_BUFFER_OFFSET(buffer) = frame_;
@@ -147,13 +165,25 @@ GstBuffer *TestStream::frame() const
     return buffer;
 }
 
-GstBuffer *TestStream::depth() const
+void TestStream::set_time_of_sweep(GstBuffer *buffer) const
 {
-    GstBuffer *buffer = pictures_->depth(sweep());
     GST_BUFFER_PTS(buffer) = time_of(frame_);
     GST_BUFFER_DURATION(buffer) = time_of(frame_ + plan_.planes()) - time_of(frame_);
     GST_BUFFER_OFFSET(buffer) = sweep();
     GST_BUFFER_OFFSET_END(buffer) = sweep() + 1;
+}
+
+GstBuffer *TestStream::motion() const
+{
+    GstBuffer *buffer = shown_in_middle().motion(sweep());
+    set_time_of_sweep(buffer);
+    return buffer;
+}
+
+GstBuffer *TestStream::depth() const
+{
+    GstBuffer *buffer = shown_in_middle().depth(sweep());
+    set_time_of_sweep(buffer);
     GstDepthInfo info = depth_info(plan_);
     info.sequence = sweep();
     info.sweep = sweep();
@@ -161,14 +191,23 @@ GstBuffer *TestStream::depth() const
     return buffer;
 }
 
-GstCaps *TestStream::depth_caps() const
+GstCaps *TestStream::truth_caps(GstVideoFormat format) const
 {
     GstVideoInfo info;
-    gst_video_info_set_format(&info, GST_VIDEO_FORMAT_GRAY16_LE, GST_VIDEO_INFO_WIDTH(&info_),
-                              GST_VIDEO_INFO_HEIGHT(&info_));
+    gst_video_info_set_format(&info, format, GST_VIDEO_INFO_WIDTH(&info_), GST_VIDEO_INFO_HEIGHT(&info_));
     info.fps_n = rate_n_;
     info.fps_d = rate_d_;
-    GstCaps *caps = gst_video_info_to_caps(&info);
+    return gst_video_info_to_caps(&info);
+}
+
+GstCaps *TestStream::motion_caps() const
+{
+    return truth_caps(GST_VIDEO_FORMAT_RGBA64_LE);
+}
+
+GstCaps *TestStream::depth_caps() const
+{
+    GstCaps *caps = truth_caps(GST_VIDEO_FORMAT_GRAY16_LE);
     const GstDepthInfo depth = depth_info(plan_);
     gst_depth_info_to_caps(&depth, caps);
     return caps;

@@ -41,18 +41,25 @@ public:
     /* The next frame will be taken at `time` if that is later than it would have been. */
     void postpone(GstClockTime time);
 
-    /* The frame or, for the sweep's first frame, the depth map that is due, with its time and metas. */
+    /* The frame or, for the sweep's first frame, the true depth or motion that is due, with its time and
+     * metas. */
     GstBuffer *frame() const;
     GstBuffer *depth() const;
+    GstBuffer *motion() const;
     void advance() { frame_++; }
 
-    /* Caps of the depth maps. */
+    /* Caps of true depth and motion. */
     GstCaps *depth_caps() const;
+    GstCaps *motion_caps() const;
 
 private:
     guint64 sweep() const { return frame_ / plan_.planes(); }
     guint plane() const { return static_cast<guint>(frame_ % plan_.planes()); }
     GstClockTime time_of(guint64 frame) const;
+    const SimulatedSweep &shown(guint64 frame) const;
+    const SimulatedSweep &shown_in_middle() const;
+    void set_time_of_sweep(GstBuffer *buffer) const;
+    GstCaps *truth_caps(GstVideoFormat format) const;
 
     TestSettings settings_;
     dff::SweepPlan plan_;
@@ -60,6 +67,7 @@ private:
     gint rate_d_ = 1;
     GstVideoInfo info_;
     std::unique_ptr<SimulatedSweep> pictures_;
+    std::unique_ptr<SimulatedSweep> turned_; /* the scene upside down; only if there are cuts */
     guint64 frame_ = 0;
     guint64 first_frame_ = 0; /* taken at first_time_; the others follow at the frame rate */
     GstClockTime first_time_ = 0;

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "engine/scene/moving_ball.h"
+#include "engine/scene/moving_thing.h"
 #include "engine/scene/thin_lens_renderer.h"
 
 #include <stop_token>
@@ -24,32 +24,36 @@ struct PicturePatch {
     cv::Mat3f values;
 };
 
-/* Lets a ball fly through a scene that stands still: what lies behind its path and what lies before it is
- * rendered once a plane, then each frame blurs the ball alone and puts it between the two. */
+/* Lets things fly through a scene that stands still: what of it lies behind, between and before their paths
+ * is rendered once a plane, then each frame blurs the things alone and puts them between. */
 class MovingOverlay {
 public:
-    /* `depth_to_position` is the plane position of depth 1. Unusable where `stop` was requested. */
-    MovingOverlay(const ThinLensRenderer &renderer, MovingBall ball, const std::vector<PlaneView> &views,
-                  double depth_to_position, const std::stop_token &stop);
+    /* `things` are there from far to near; `depth_to_position` is the plane position of depth 1. Unusable
+     * where `stop` was requested. */
+    MovingOverlay(const ThinLensRenderer &renderer, std::vector<MovingThing> things,
+                  const std::vector<PlaneView> &views, double depth_to_position, const std::stop_token &stop);
 
-    const MovingBall &ball() const { return ball_; }
+    const std::vector<MovingThing> &things() const { return things_; }
 
-    /* The part of a plane's picture that the ball changes, `time` planes after the start. */
+    /* The part of a plane's picture that the things change, `time` planes after the start. */
     PicturePatch patch(unsigned plane, double time) const;
 
 private:
     struct Band {
         PlaneView view;
-        double blur; /* of the ball, pixels */
         cv::Rect where;
-        cv::Mat4f behind;
-        cv::Mat4f before;
+        std::vector<cv::Mat4f> slabs; /* of the scene: behind the first thing, before it, ...; empty if there
+                                         is nothing */
     };
 
-    cv::Rect reach_of(const Band &band, const cv::Point2d &center) const;
+    double blur_of(const Band &band, double depth) const;
+    cv::Rect reach_of(const Band &band, const MovingThing &thing, const MovingPose &pose) const;
+    cv::Rect rows_of(const Band &band) const;
 
-    MovingBall ball_;
+    std::vector<MovingThing> things_;
     cv::Size picture_;
+    double blur_step_;
+    double depth_to_position_;
     std::vector<Band> bands_;
 };
 

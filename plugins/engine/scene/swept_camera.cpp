@@ -14,7 +14,7 @@ namespace dff {
 namespace {
 
 /* Seeds are drawn per use, so that a change to one leaves the others alone. */
-enum SeedUse : uint64_t { jitter_seed = 1, noise_seed = 2, ball_seed = 3 };
+enum SeedUse : uint64_t { jitter_seed = 1, noise_seed = 2, ball_seed = 3, shake_seed = 4 };
 
 uint16_t depth_pixel(double depth)
 {
@@ -41,16 +41,21 @@ Scene bent(const Scene &scene, double planes, double last_plane)
 
 SweptCamera::SweptCamera(Scene scene, SweptCameraSettings settings, const std::stop_token &stop)
     : scene_(std::move(scene)), settings_(std::move(settings)),
+      camera_motion_(settings_.pan, settings_.shake, mix_seed(settings_.seed, shake_seed)),
       renderer_(bent(scene_, settings_.field_curvature, settings_.plan.planes() - 1.0),
                 settings_.plan.planes(), settings_.blur_step, stop)
 {
-    if (settings_.motion == 0.0)
+    std::vector<MovingThing> things =
+        make_moving_things(settings_.objects, size(), settings_.motion, mix_seed(settings_.seed, ball_seed));
+    if (settings_.motion == 0.0 || things.empty())
         return;
     std::vector<PlaneView> views;
-    for (unsigned plane = 0; plane < plan().planes(); plane++)
+    for (unsigned plane = 0; plane < plan().planes(); plane++) {
         views.push_back(view(plane));
-    overlay_.emplace(renderer_, MovingBall(size(), settings_.motion, mix_seed(settings_.seed, ball_seed)),
-                     std::move(views), plan().planes() - 1.0, stop);
+        if (!camera_motion_.is_still()) /* then seen() warps the picture as a whole */
+            views.back().warp = cv::Matx23d::eye();
+    }
+    overlay_.emplace(renderer_, std::move(things), std::move(views), plan().planes() - 1.0, stop);
 }
 
 PlaneView SweptCamera::view(unsigned plane) const
@@ -72,15 +77,45 @@ double SweptCamera::time(uint64_t sweep, double plane) const
     return static_cast<double>(sweep * plan().planes()) + plane;
 }
 
+/* When what moves is seen in a plane. */
+double SweptCamera::exposure_time(uint64_t sweep, unsigned plane) const
+{
+    return time(sweep, settings_.frozen ? middle_of_sweep() : plane);
+}
+
+/* How a plane is seen where the camera has turned to at a time: magnification and shift are the lens's, after
+ * the turn. */
+PlaneView SweptCamera::view_at(unsigned plane, double time) const
+{
+    PlaneView seen = view(plane);
+    const cv::Point2d offset = camera_motion_.offset(time);
+    seen.warp(0, 2) -= seen.warp(0, 0) * std::remainder(offset.x, 2.0 * size().width);
+    seen.warp(1, 2) -= seen.warp(1, 1) * std::remainder(offset.y, 2.0 * size().height);
+    return seen;
+}
+
 cv::Mat3f SweptCamera::expose(unsigned plane, const std::stop_token &stop) const
 {
     const PlaneView seen = view(plane);
-    return warp_picture(renderer_.render(seen.focus, stop), seen);
+    const cv::Mat3f picture = renderer_.render(seen.focus, stop);
+    return camera_motion_.is_still() ? warp_picture(picture, seen) : picture;
 }
 
 PicturePatch SweptCamera::expose_motion(uint64_t sweep, unsigned plane) const
 {
-    return overlay_->patch(plane, time(sweep, plane));
+    return overlay_->patch(plane, exposure_time(sweep, plane));
+}
+
+cv::Mat3f SweptCamera::seen(const cv::Mat3f &exposed, uint64_t sweep, unsigned plane) const
+{
+    cv::Mat3f picture = exposed;
+    if (overlay_) {
+        picture = exposed.clone();
+        const PicturePatch patch = expose_motion(sweep, plane);
+        patch.values.copyTo(picture(patch.where));
+    }
+    return camera_motion_.is_still() ? picture
+                                     : warp_picture(picture, view_at(plane, exposure_time(sweep, plane)));
 }
 
 cv::Mat3b SweptCamera::digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t realisation) const
@@ -89,22 +124,55 @@ cv::Mat3b SweptCamera::digitise(const cv::Mat3f &exposed, unsigned plane, uint64
     return settings_.noise.digitise(exposed, mix_seed(seed, realisation));
 }
 
+/* work(pixel of the picture, pixel of the scene, whether it is mirrored along x and y, and the thing that
+ * hides the scene there, or nullptr). */
+template <typename Work> void SweptCamera::for_each_pixel(double time, const Work &work) const
+{
+    std::vector<std::pair<const MovingThing *, MovingPose>> things; /* near to far */
+    if (overlay_)
+        for (auto thing = overlay_->things().rbegin(); thing != overlay_->things().rend(); ++thing)
+            things.emplace_back(&*thing, thing->pose(time));
+    const cv::Point2d offset = camera_motion_.offset(time);
+    for (int y = 0; y < size().height; y++) {
+        const WorldPixel row = world_pixel(y + offset.y, size().height);
+        for (int x = 0; x < size().width; x++) {
+            const WorldPixel column = world_pixel(x + offset.x, size().width);
+            const cv::Point world(column.at, row.at);
+            const auto found = std::find_if(things.begin(), things.end(), [&](const auto &thing) {
+                return thing.first->covers(world, thing.second) &&
+                       scene_.depth(world) >= thing.first->layer();
+            });
+            work(cv::Point(x, y), world, cv::Vec2b(column.is_mirrored, row.is_mirrored),
+                 found == things.end() ? nullptr : found->first);
+        }
+    }
+}
+
 cv::Mat1w SweptCamera::depth_map(uint64_t sweep) const
 {
     cv::Mat1w map(size());
-    for (int y = 0; y < map.rows; y++)
-        for (int x = 0; x < map.cols; x++)
-            map(y, x) = depth_pixel(scene_.depth(y, x));
-    if (!scene_.known.empty())
-        map.setTo(DepthScale::no_value, scene_.known == 0);
-    if (!has_motion())
-        return map;
-    const MovingBall &ball = overlay_->ball();
-    const cv::Point2d center = ball.center(time(sweep, middle_of_sweep()));
-    cv::Mat1b covered(size(), uchar{0});
-    cv::circle(covered, center, cvRound(ball.radius()), 255, cv::FILLED);
-    covered.setTo(0, scene_.depth < MovingBall::depth);
-    map.setTo(depth_pixel(MovingBall::depth), covered);
+    const double now = time(sweep, middle_of_sweep());
+    for_each_pixel(now, [&](const cv::Point &pixel, const cv::Point &world, const cv::Vec2b &,
+                            const MovingThing *thing) {
+        const bool is_known = thing || scene_.known.empty() || scene_.known(world) != 0;
+        const double depth = thing ? thing->pose(now).depth : static_cast<double>(scene_.depth(world));
+        map(pixel) = is_known ? depth_pixel(depth) : DepthScale::no_value;
+    });
+    return map;
+}
+
+cv::Mat2f SweptCamera::motion_map(uint64_t sweep) const
+{
+    cv::Mat2f map(size());
+    const double now = time(sweep, middle_of_sweep());
+    const cv::Vec2d camera = camera_motion_.velocity(now);
+    for_each_pixel(now, [&](const cv::Point &pixel, const cv::Point &world, const cv::Vec2b &is_mirrored,
+                            const MovingThing *thing) {
+        cv::Vec2d velocity = thing ? thing->velocity(world, now) : cv::Vec2d();
+        for (int axis = 0; axis < 2; axis++)
+            velocity[axis] = (is_mirrored[axis] ? -velocity[axis] : velocity[axis]) - camera[axis];
+        map(pixel) = velocity;
+    });
     return map;
 }
 

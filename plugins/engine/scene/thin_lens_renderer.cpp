@@ -149,4 +149,10 @@ cv::Mat4f ThinLensRenderer::render_before(double z, double u, const cv::Rect &re
     return composite(z, {nearest_, layer_of(u) - 1}, region, stop);
 }
 
+cv::Mat4f ThinLensRenderer::render_between(double z, double nearest, double farthest, const cv::Rect &region,
+                                           const std::stop_token &stop) const
+{
+    return composite(z, {layer_of(nearest), layer_of(farthest) - 1}, region, stop);
+}
+
 } // namespace dff

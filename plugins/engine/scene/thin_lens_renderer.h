@@ -37,6 +37,10 @@ public:
     cv::Mat4f render_before(double z, double u, const cv::Rect &region,
                             const std::stop_token &stop = {}) const;
 
+    /* Likewise what lies at `nearest` or behind it, and before `farthest`. */
+    cv::Mat4f render_between(double z, double nearest, double farthest, const cv::Rect &region,
+                             const std::stop_token &stop = {}) const;
+
     /* Diameter in pixels of the circle of confusion of plane position u. */
     double blur_diameter(double u, double z) const { return blur_step_ * std::abs(u - z); }
 

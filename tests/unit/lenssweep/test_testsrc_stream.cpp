@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -108,6 +109,48 @@ TEST(TestSrcStream, the_depth_pad_comes_and_goes_while_playing)
         gst_element_set_state(sink, GST_STATE_NULL);
         gst_bin_remove(GST_BIN(pipeline.get()), sink);
     }
+}
+
+TEST(TestSrcStream, the_motion_pad_tells_how_each_pixel_moves)
+{
+    Pipeline pipeline("lenssweeptestsrc name=rig planes=4 num-buffers=10 pan=2.5" + small +
+                      "queue ! fakesink rig.motion ! queue ! appsink name=motion sync=false");
+    pipeline.set_state(GST_STATE_PLAYING);
+    const auto samples = pipeline.pull_all("motion");
+    ASSERT_EQ(samples.size(), 3U);
+    EXPECT_EQ(GST_BUFFER_DURATION(gst_sample_get_buffer(samples[1].get())),
+              gst_util_uint64_scale(GST_SECOND, 1, 26));
+    const GstVideoInfo info = info_of(samples[1].get());
+    EXPECT_EQ(GST_VIDEO_INFO_FORMAT(&info), GST_VIDEO_FORMAT_RGBA64_LE);
+    const std::vector<uint8_t> bytes = bytes_of(samples[1].get());
+    for (size_t pixel = 0; pixel < bytes.size(); pixel += 8) {
+        EXPECT_NEAR(bytes[pixel] + 256 * bytes[pixel + 1], 32768 - 160, 1) << "to the left";
+        EXPECT_EQ(bytes[pixel + 2] + 256 * bytes[pixel + 3], 32768);
+    }
+    EXPECT_EQ(pipeline.wait(), "");
+}
+
+TEST(TestSrcStream, a_cut_shows_the_scene_upside_down_from_the_very_frame_on)
+{
+    Pipeline pipeline("lenssweeptestsrc name=rig planes=4 num-buffers=12 cut=6 blur-step=0 ! "
+                      "video/x-raw,format=GRAY8,width=64,height=48 ! queue ! appsink name=out sync=false "
+                      "rig.depth ! queue ! appsink name=depth sync=false");
+    pipeline.set_state(GST_STATE_PLAYING);
+    const auto frames = pipeline.pull_all("out");
+    ASSERT_EQ(frames.size(), 12U);
+    EXPECT_EQ(bytes_of(frames[5].get()), bytes_of(frames[1].get()));
+    std::vector<uint8_t> turned = bytes_of(frames[2].get());
+    std::reverse(turned.begin(), turned.end());
+    const std::vector<uint8_t> cut = bytes_of(frames[6].get());
+    ASSERT_EQ(cut.size(), turned.size());
+    for (size_t i = 0; i < cut.size(); i++)
+        EXPECT_NEAR(cut[i], turned[i], 3);
+    const auto depths = pipeline.pull_all("depth");
+    ASSERT_EQ(depths.size(), 3U);
+    EXPECT_EQ(depth_of(depths[0].get()), depth_of(depths[1].get())) << "as it is in the middle of the sweep";
+    std::vector<uint16_t> expected = depth_of(depths[0].get());
+    std::reverse(expected.begin(), expected.end());
+    EXPECT_EQ(depth_of(depths[2].get()), expected);
 }
 
 TEST(TestSrcStream, a_scene_changes_with_the_next_sweep)
