@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/stack_denoiser.h"
 
+#include "engine/luma.h"
 #include "engine/opencl/program.h"
 
 #include <algorithm>
@@ -39,6 +40,29 @@ std::vector<TileDifference> quiet_tiles(std::span<const TileDifference> tiles,
             quiet.push_back(tiles[i]);
     }
     return quiet;
+}
+
+/* Noise of luma, of that of a component's samples: interleaved colours are noisy by themselves. */
+double luma_part(PixelFormat format)
+{
+    return is_interleaved(format) ? std::hypot(0.299, 0.587, 0.114) : 1.0;
+}
+
+/* Samples of 8 bits, or of 16, rounded from their means. */
+void to_samples(std::span<const cl_ushort> means, uint32_t sample_bytes, std::vector<std::byte> &samples)
+{
+    samples.resize(means.size());
+    if (sample_bytes == 1) {
+        for (size_t i = 0; i < means.size(); i++)
+            samples[i] = static_cast<std::byte>((means[i] + mean_unit / 2) / mean_unit);
+        return;
+    }
+    for (size_t i = 0; i < means.size() / 2; i++) {
+        cl_float mean = 0.0F;
+        std::memcpy(&mean, means.data() + 2 * i, sizeof mean);
+        const auto value = static_cast<uint16_t>(std::lround(mean));
+        std::memcpy(samples.data() + 2 * i, &value, sizeof value);
+    }
 }
 
 } // namespace
@@ -166,6 +190,9 @@ void StackDenoiser::begin(const StackView &view)
     for (const auto &part : components_)
         part->noise = part->single();
     has_learned_ = false;
+    kept_sweeps_ = 1;
+    kept_variance_ = 1.0;
+    left_.reset();
 }
 
 void StackDenoiser::hold(std::span<const uint8_t> held)
@@ -177,28 +204,27 @@ void StackDenoiser::hold(std::span<const uint8_t> held)
     holds_ = !held.empty();
 }
 
-void StackDenoiser::background(size_t component, uint32_t z, uint32_t first_row, std::span<std::byte> samples)
+/* All parts are read at once: a round trip to the device costs more than a part. */
+void StackDenoiser::background(std::span<BackgroundPart> parts)
 {
-    const ComponentState &part = *components_[component];
-    const size_t width = part.component.width,
-                 place = (size_t{z} * part.component.height + first_row) * width;
+    std::vector<std::vector<cl_ushort>> means(parts.size()); /* or two a cl_float */
     translate_errors(*device_, [&] {
-        if (part.component.sample_bytes == 2) {
-            std::vector<cl_float> means(samples.size() / 2);
-            queue_.commands().enqueueReadBuffer(part.means, CL_TRUE, place * sizeof(cl_float),
-                                                means.size() * sizeof(cl_float), means.data());
-            for (size_t i = 0; i < means.size(); i++) {
-                const auto value = static_cast<uint16_t>(std::lround(means[i]));
-                std::memcpy(samples.data() + 2 * i, &value, sizeof value);
-            }
-            return;
+        for (size_t i = 0; i < parts.size(); i++) {
+            const BackgroundPart &part = parts[i];
+            const ComponentState &of = *components_[part.component];
+            const size_t size = of.component.sample_bytes == 2 ? sizeof(cl_float) : sizeof(cl_ushort);
+            means[i].resize(size_t{part.width} * part.height * size / sizeof(cl_ushort));
+            if (means[i].empty())
+                continue;
+            queue_.commands().enqueueReadBufferRect(
+                of.means, CL_FALSE, {part.x * size, part.y + size_t{part.z} * of.component.height, 0},
+                {0, 0, 0}, {part.width * size, part.height, 1}, of.component.width * size, 0,
+                part.width * size, 0, means[i].data());
         }
-        std::vector<cl_ushort> means(samples.size());
-        queue_.commands().enqueueReadBuffer(part.means, CL_TRUE, place * sizeof(cl_ushort),
-                                            means.size() * sizeof(cl_ushort), means.data());
-        for (size_t i = 0; i < means.size(); i++)
-            samples[i] = static_cast<std::byte>((means[i] + mean_unit / 2) / mean_unit);
+        queue_.commands().finish();
     });
+    for (size_t i = 0; i < parts.size(); i++)
+        to_samples(means[i], components_[parts[i].component]->component.sample_bytes, parts[i].samples);
 }
 
 void StackDenoiser::look_at_noise(const StackView &view, uint32_t z)
@@ -231,7 +257,7 @@ void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wan
         for (const auto &part : components_)
             tiles.push_back(part->tiles);
         strips_->measure(bytes_.buffer(), learned_plane_, learned_step(), tiles);
-        learn_noise();
+        learn_noise(parameters.frames);
     }
     std::vector<NoiseBounds> bounds;
     for (const auto &part : components_)
@@ -244,7 +270,7 @@ void StackDenoiser::run_tiles(const DenoiseParameters &parameters, uint64_t want
 {
     measure();
     if (has_means_)
-        learn_noise();
+        learn_noise(parameters.frames);
     judge(parameters);
     average(parameters, wanted, absent);
 }
@@ -322,7 +348,7 @@ std::vector<uint8_t> StackDenoiser::read_tiles()
     return sweeps;
 }
 
-void StackDenoiser::learn_noise()
+void StackDenoiser::learn_noise(uint32_t frames)
 {
     const std::vector<uint8_t> sweeps = read_tiles();
     for (const auto &part : components_) {
@@ -339,6 +365,30 @@ void StackDenoiser::learn_noise()
             part->spread = std::lerp(spread_of_tiles(quiet, part->samples), part->spread, kept);
     }
     has_learned_ = true;
+    tell_noise_left(frames, sweeps);
+}
+
+/* The mean m <- m + (x - m) / k of k sweeps has 1 / k of their variance; where k has come to its most and
+ * stays there, less and less, down to 1 / (2 k - 1). `sweeps` are those before this stack. */
+void StackDenoiser::tell_noise_left(uint32_t frames, std::span<const uint8_t> sweeps)
+{
+    const ComponentState &luma = *components_.front();
+    kept_sweeps_ = std::min(kept_sweeps_ + 1, frames);
+    const double share = 1.0 / kept_sweeps_;
+    kept_variance_ = (1.0 - share) * (1.0 - share) * kept_variance_ + share * share;
+
+    const double unit = luma.component.sample_bytes == 2 ? 256.0 : 1.0;
+    std::vector<double> variances;
+    for (size_t i = 0; i < luma.host_tiles.size(); i++) {
+        const uint32_t k = std::min<uint32_t>(sweeps[i] + 1U, frames);
+        const double part = k < frames ? 1.0 / k : std::min(kept_variance_, share);
+        const auto brightness = static_cast<float>(luma.host_tiles[i].brightness / unit);
+        variances.push_back(part * static_cast<double>(variance_at(luma.noise, brightness)));
+    }
+    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+    std::nth_element(variances.begin(), middle, variances.end());
+    const double rounding = luma.component.sample_bytes == 2 ? 0.0 : 1.0 / 12.0;
+    left_ = luma_part(shape_.format) * std::sqrt(*middle + rounding) / unit;
 }
 
 DenoiseReport StackDenoiser::report()
@@ -348,6 +398,7 @@ DenoiseReport StackDenoiser::report()
         report.noise.push_back(part->noise);
         report.spread.push_back(part->spread);
     }
+    report.left = left_;
     report.sample_unit = sample_bytes(shape_.format) == 2 ? 1.0 / 256.0 : 1.0;
     std::vector<uint8_t> sweeps(tiles_a_plane() * shape_.planes);
     if (has_means_)

@@ -13,12 +13,22 @@ struct DenoiseParameters {
     float strength = 1.0f; /* how much change passes for noise: 1 is six standard deviations */
 };
 
+/* A rectangle of one component's samples in one plane. */
+struct BackgroundPart {
+    size_t component;
+    uint32_t z;
+    uint32_t x, y, width, height; /* in samples: three a pixel where colours are interleaved */
+    std::vector<std::byte> samples;
+};
+
 /* What the denoiser knows after a stack. */
 struct DenoiseReport {
     std::vector<NoiseCurve> noise; /* of each component (luma and chroma, or interleaved colours) */
     std::vector<float> spread;     /* of each component's tiles, see spread_of_tiles() */
     double sample_unit = 1.0;      /* of the noise, where white is 256 */
     double mean_sweeps = 0.0;      /* that were averaged, over all tiles and planes */
+    std::optional<double> left;    /* noise of the denoised luma, a standard deviation in steps of 8 bits: the
+                                      median over the picture; known from the second stack on */
 };
 
 /* Averages each plane of a focal stack with the same plane of the stacks before, in tiles of 8x8 pixels,
@@ -36,9 +46,8 @@ public:
     void denoise(const StackView &view, std::span<std::byte> memory, uint64_t absent,
                  const DenoiseParameters &parameters, std::span<const uint8_t> held = {});
 
-    /* What stands still in plane z, as the mean of the sweeps: as many rows of a component's samples as
-     * `samples` has room for, from `first_row` on. Reads back from the device. */
-    void background(size_t component, uint32_t z, uint32_t first_row, std::span<std::byte> samples);
+    /* What stands still, as the mean of the sweeps: fills the samples in. Reads back from the device. */
+    void background(std::span<BackgroundPart> parts);
 
     /* The next stack shows another scene: nothing before it is averaged with it. */
     void forget() { has_means_ = false; }
@@ -63,7 +72,8 @@ private:
     void run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
     uint32_t learned_step() const;
     std::vector<uint8_t> read_tiles();
-    void learn_noise();
+    void learn_noise(uint32_t frames);
+    void tell_noise_left(uint32_t frames, std::span<const uint8_t> sweeps);
     template <typename... Arguments> void enqueue_tiles(cl::Kernel &kernel, const Arguments &...arguments);
     size_t tiles_a_plane() const
     {
@@ -83,6 +93,9 @@ private:
     PlaneTracker tracker_;
     bool has_means_ = false;
     bool has_learned_ = false;   /* noise from the difference of two sweeps */
+    uint32_t kept_sweeps_ = 1;   /* since begin(), at most `frames` */
+    double kept_variance_ = 1.0; /* of their mean, of one sweep's */
+    std::optional<double> left_; /* DenoiseReport::left */
     uint32_t learned_plane_ = 0; /* which tells of noise in this stack */
     StageTimes times_;
 };

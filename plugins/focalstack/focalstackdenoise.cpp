@@ -203,7 +203,7 @@ void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, gu
     }
     if (!state.follower)
         state.follower = std::make_unique<dff::SweepFollower>(view.shape);
-    const std::vector<uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
+    const std::span<const uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
     state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters, held);
     state.follower->follow(view, stack.memory(), *state.denoiser);
 }
@@ -335,6 +335,8 @@ GstStructure *statistics(FocalStackDenoiseState &state)
     GstStructure *stats = gst_structure_new("application/x-focalstackdenoise-stats", "stacks", G_TYPE_UINT64,
                                             state.stacks, "sweeps", G_TYPE_DOUBLE, state.report.mean_sweeps,
                                             "moved", G_TYPE_DOUBLE, state.moved, nullptr);
+    if (state.report.left)
+        gst_structure_set(stats, "noise-left", G_TYPE_DOUBLE, *state.report.left, nullptr);
     set_noise(stats, state.report);
     return stats;
 }
@@ -438,9 +440,8 @@ void install_properties(GObjectClass *object_class)
     g_object_class_install_property(
         object_class, PropertyStats,
         g_param_spec_boxed("stats", "Statistics",
-                           "Stacks denoised, sweeps averaged and part that moved in the last one, and noise "
-                           "(standard deviation, white is "
-                           "256) at 16 brightnesses",
+                           "Stacks denoised, sweeps averaged and part that moved in the last one, noise "
+                           "(standard deviation, white is 256) at 16 brightnesses, and noise-left in luma",
                            GST_TYPE_STRUCTURE,
                            static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 }

@@ -32,22 +32,25 @@ cv::Mat ellipse(int side)
 /* The rectangle of all silhouettes, with a margin, and large enough for the flow. */
 cv::Rect rectangle_of(const Silhouettes &silhouettes)
 {
-    cv::Mat1b any = silhouettes.wide.front().clone();
-    cv::Mat1b certain = silhouettes.tight.front().clone();
-    for (size_t z = 1; z < silhouettes.wide.size(); z++) {
-        any |= silhouettes.wide[z];
-        certain |= silhouettes.tight[z];
-    }
-    if (cv::countNonZero(certain) == 0)
+    if (silhouettes.where.empty())
         return {};
-    cv::Rect where = cv::boundingRect(any);
+    const cv::Size size = silhouettes.wide.front().size();
+    cv::Rect where;
+    bool is_any = false;
+    for (size_t z = 0; z < silhouettes.wide.size(); z++) {
+        where |= cv::boundingRect(silhouettes.wide[z](silhouettes.where));
+        is_any = is_any || cv::countNonZero(silhouettes.tight[z](silhouettes.where)) > 0;
+    }
+    if (!is_any || where.empty())
+        return {};
+    where += silhouettes.where.tl();
     const auto widen = [](int &first, int &size, int most, int by) {
         const int from = std::max(first - by, 0), to = std::min(first + size + by, most);
         first = from;
         size = to - from;
     };
-    widen(where.x, where.width, any.cols, std::max(margin, (least_for_flow - where.width + 1) / 2));
-    widen(where.y, where.height, any.rows, std::max(margin, (least_for_flow - where.height + 1) / 2));
+    widen(where.x, where.width, size.width, std::max(margin, (least_for_flow - where.width + 1) / 2));
+    widen(where.y, where.height, size.height, std::max(margin, (least_for_flow - where.height + 1) / 2));
     return where;
 }
 

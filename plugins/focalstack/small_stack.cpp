@@ -17,6 +17,40 @@ int factor_of(const StackShape &shape)
     return factor;
 }
 
+/* Sums of neighbours: out[i] = in[2 i] + in[2 i + 1]. */
+template <typename In, typename Out> void add_pairs(const In *in, size_t count, Out *out)
+{
+    for (size_t i = 0; i < count; i++)
+        out[i] = static_cast<Out>(Out{in[2 * i]} + Out{in[2 * i + 1]});
+}
+
+/* Means over cells of side x side samples of 8 bits of a picture of one channel, in steps that the compiler
+ * makes vectors of. */
+template <int side> void take_plain_means(const cv::Mat &picture, float scale, cv::Mat1f &means)
+{
+    static_assert(side == 2 || side == 4);
+    const auto count = static_cast<size_t>(means.cols);
+    std::vector<uint16_t> columns(count * side), pairs(count * side / 2), cells(count);
+    for (int y = 0; y < means.rows; y++) {
+        const uint8_t *rows[side];
+        for (int i = 0; i < side; i++)
+            rows[i] = picture.ptr<uint8_t>(y * side + i);
+        for (size_t x = 0; x < columns.size(); x++) {
+            unsigned sum = 0;
+            for (int i = 0; i < side; i++)
+                sum += rows[i][x];
+            columns[x] = static_cast<uint16_t>(sum);
+        }
+        add_pairs(columns.data(), pairs.size(), pairs.data());
+        if (side == 4)
+            add_pairs(pairs.data(), cells.size(), cells.data());
+        const uint16_t *sums = side == 4 ? cells.data() : pairs.data();
+        float *out = means[y];
+        for (size_t x = 0; x < count; x++)
+            out[x] = static_cast<float>(sums[x]) * scale;
+    }
+}
+
 /* Of a column of a cell: 32 samples of 8 bits fit into 16. */
 template <typename Sample> struct SumOf;
 template <> struct SumOf<uint8_t> {
@@ -135,7 +169,11 @@ void SmallStack::take(const std::vector<std::vector<cv::Mat>> &pictures)
                 const int side = factor_ / static_cast<int>(components_[c].subsampling);
                 const auto scale = static_cast<float>(1.0 / samples(i));
                 cv::Mat1f &means = pictures_[static_cast<size_t>(z)][i];
-                if (components_[c].sample_bytes == 2)
+                if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 4)
+                    take_plain_means<4>(picture, scale, means);
+                else if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 2)
+                    take_plain_means<2>(picture, scale, means);
+                else if (components_[c].sample_bytes == 2)
                     take_means<uint16_t>(picture, static_cast<int>(i - first), side, scale / 256.0F, means);
                 else
                     take_means<uint8_t>(picture, static_cast<int>(i - first), side, scale, means);

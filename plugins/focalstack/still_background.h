@@ -4,10 +4,13 @@
 
 #include "focalstack/small_stack.h"
 
+#include <array>
+
 namespace dff {
 
 /* Where one sweep differs from what stood still in those before; masks of 0 and 1, a plane each. */
 struct Silhouettes {
+    cv::Rect where;               /* outside of it no mask but `known` is set; empty if nothing moves */
     std::vector<cv::Mat1b> tight; /* certainly: the moving objects, sharp or blurred, each at its own time */
     std::vector<cv::Mat1b> wide;  /* perhaps */
     std::vector<cv::Mat1b> held;  /* wide, and what stood there before is known */
@@ -18,36 +21,48 @@ struct Silhouettes {
 
 /* What stands still, plane by plane (the same plane has the same blur), at SmallStack's size. A place that
  * differs keeps its background while something passes; when it has been the same for two sweeps, it is the
- * background. */
+ * background.
+ *
+ * Each sweep costs one look at all pixels, for what certainly differs, and one to learn; all else is done
+ * around what moves. Buffers are kept from sweep to sweep. */
 class StillBackground {
 public:
     /* Noise of a small picture's pixels at 256 brightnesses, as a standard deviation, for each channel. */
     using Noise = std::vector<std::array<float, 256>>;
 
-    /* Compares the sweep with the ones before and learns from it. */
-    Silhouettes follow(const SmallStack &sweep, const Noise &noise);
+    /* Compares the sweep with the ones before and learns from it; `last` is the sweep that it was given
+     * before. What it gives is good until the next sweep. */
+    const Silhouettes &follow(const SmallStack &sweep, const SmallStack &last, const Noise &noise);
 
     void forget() { planes_.clear(); }
 
+    const Silhouettes &found() const { return found_; }
+
 private:
     struct Plane {
-        std::vector<cv::Mat1f> background, last; /* a channel each */
-        cv::Mat1b sweeps;                        /* that background is the mean of */
-        cv::Mat1b known;                         /* background was seen twice */
-        cv::Mat1b steady;                        /* as in the sweep before */
-        cv::Mat1f same;                          /* sweeps that a place has differed and been steady */
+        std::vector<cv::Mat1f> background; /* a channel each */
+        cv::Mat1b sweeps;                  /* that background is the mean of */
+        cv::Mat1b known;                   /* background was seen twice */
+        cv::Mat1b steady;                  /* as in the sweep before */
+        cv::Rect steady_where;             /* where that was looked for */
+        cv::Mat1f same;                    /* sweeps that a place has differed and been steady */
+        cv::Mat1b raw;                     /* what a silhouette is made of */
+        cv::Rect outline;                  /* of the tight silhouette */
     };
 
     void begin(const SmallStack &sweep);
-    static void compare(const Plane &plane, const SmallStack &sweep, unsigned z, const Noise &noise,
-                        cv::Mat1b &tight, cv::Mat1b &wide);
-    static void look_for_steady(Plane &plane, const SmallStack &sweep, unsigned z, const Noise &noise,
-                                cv::Mat1b &tight, const cv::Mat1b &wide);
-    cv::Mat1f halted_sweeps(const Silhouettes &found);
-    static void learn(Plane &plane, const SmallStack &sweep, unsigned z, const cv::Mat1f &halt,
-                      const cv::Mat1b &wide, cv::Mat1b &held);
+    void clear(const SmallStack &sweep);
+    void find_certain(const SmallStack &sweep, unsigned z, const Noise &noise);
+    void find_perhaps(const SmallStack &sweep, unsigned z, const Noise &noise, const cv::Mat1b &near);
+    void look_for_steady(const SmallStack &sweep, const SmallStack &last, unsigned z, const Noise &noise);
+    cv::Mat1b near_objects() const;
+    double moved_part() const;
+    cv::Mat1f halted_sweeps(const cv::Rect &where);
+    void learn(const SmallStack &sweep, unsigned z, const cv::Mat1f &halt, const cv::Rect &halt_where);
 
     std::vector<Plane> planes_;
+    Silhouettes found_;
+    cv::Rect last_where_; /* of the sweep before */
     bool was_whole_ = false;
 };
 

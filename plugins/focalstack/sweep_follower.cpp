@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace dff {
 
@@ -14,43 +15,33 @@ namespace {
 
 constexpr int tile_pixels = 8; /* of the denoiser */
 
-/* Pixels of a component's picture that may change in one plane, and how they do. */
-struct ObjectsOfComponent {
-    cv::Rect where;
-    double scale;       /* pixels of the component a pixel of the small pictures */
-    cv::Mat2f velocity; /* a plane */
-    cv::Mat1f objects;  /* 0 to 1 */
-};
-
-/* A small picture as pixels of a component, bilinear. */
-cv::Mat enlarged(const cv::Mat &small, double scale, const cv::Size &size)
+/* A small picture as pixels of a component that is `side` times as large, bilinear. */
+template <typename Pixel> cv::Mat_<Pixel> enlarged(const cv::Mat_<Pixel> &small, int side)
 {
-    const cv::Matx23d to_small(1.0 / scale, 0.0, 0.5 / scale - 0.5, 0.0, 1.0 / scale, 0.5 / scale - 0.5);
-    cv::Mat large;
-    cv::warpAffine(small, large, to_small, size, cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
-                   cv::BORDER_REPLICATE);
+    cv::Mat_<Pixel> large;
+    cv::resize(small, large, {}, side, side, cv::INTER_LINEAR);
     return large;
 }
 
-ObjectsOfComponent for_component(const ObjectMotion &motion, double scale, const cv::Size &size)
+cv::Rect enlarged(const cv::Rect &small, int side)
 {
-    ObjectsOfComponent objects;
-    const int side = static_cast<int>(scale);
-    const cv::Rect &small = motion.where;
-    objects.where = cv::Rect(small.x * side, small.y * side, small.width * side, small.height * side) &
-                    cv::Rect({}, size);
-    objects.scale = scale;
-    objects.velocity = enlarged(motion.velocity, scale, objects.where.size()) * scale;
-    objects.objects = enlarged(motion.objects, scale, objects.where.size());
-    objects.objects = cv::min(cv::max(objects.objects, 0.0F), 1.0F);
-    return objects;
+    return {small.x * side, small.y * side, small.width * side, small.height * side};
+}
+
+/* The part of a small picture that shows after it was enlarged, within `size`. */
+cv::Rect shown_part(const cv::Mat1b &mask)
+{
+    const cv::Rect set = cv::boundingRect(mask);
+    if (set.empty())
+        return {};
+    return cv::Rect(set.x - 1, set.y - 1, set.width + 2, set.height + 2) & cv::Rect({}, mask.size());
 }
 
 /* The plane's picture where its objects are in the middle of the sweep, `planes` before or after it. */
 cv::Mat moved_picture(const cv::Mat &picture, const ObjectsOfComponent &objects, double farthest,
                       double planes)
 {
-    const int reach = static_cast<int>(std::ceil(farthest * objects.scale * std::fabs(planes))) + 2;
+    const int reach = static_cast<int>(std::ceil(farthest * objects.side * std::fabs(planes))) + 2;
     cv::Rect from = objects.where;
     from -= cv::Point(reach, reach);
     from += cv::Size(2 * reach, 2 * reach);
@@ -70,30 +61,37 @@ cv::Mat moved_picture(const cv::Mat &picture, const ObjectsOfComponent &objects,
     return moved;
 }
 
-/* Where there is an object, the moved picture; where one passes, the background; else the picture itself. */
-template <typename Sample>
-void compose(cv::Mat picture, const cv::Mat &moved, const cv::Mat &background, const cv::Mat1f &objects,
-             const cv::Mat1f &filled)
+/* Blends `over` into the picture by `share`, 0 to 1 or beyond. */
+template <typename Sample> void blend(cv::Mat picture, const cv::Mat &over, const cv::Mat1f &share)
 {
     const int channels = picture.channels();
     for (int y = 0; y < picture.rows; y++) {
         auto *out = picture.ptr<Sample>(y);
-        const auto *following = moved.ptr<Sample>(y), *still = background.ptr<Sample>(y);
+        const auto *shown = over.ptr<Sample>(y);
+        const float *part = share[y];
         for (int x = 0; x < picture.cols; x++) {
-            const float object = objects(y, x), fill = filled(y, x);
-            if (object <= 0.0F && fill <= 0.0F)
+            if (part[x] <= 0.0F)
                 continue;
+            const float by = std::min(part[x], 1.0F);
             for (int i = x * channels; i < (x + 1) * channels; i++) {
-                const float base = std::lerp(static_cast<float>(out[i]), static_cast<float>(still[i]), fill);
-                out[i] = cv::saturate_cast<Sample>(std::lerp(base, static_cast<float>(following[i]), object));
+                const auto from = static_cast<float>(out[i]);
+                out[i] = cv::saturate_cast<Sample>(from + by * (static_cast<float>(shown[i]) - from));
             }
         }
     }
 }
 
+void blend(const cv::Mat &picture, const cv::Mat &over, const cv::Mat1f &share)
+{
+    if (picture.depth() == CV_16U)
+        blend<uint16_t>(picture, over, share);
+    else
+        blend<uint8_t>(picture, over, share);
+}
+
 } // namespace
 
-SweepFollower::SweepFollower(const StackShape &shape) : shape_(shape), small_(shape)
+SweepFollower::SweepFollower(const StackShape &shape) : shape_(shape), small_(shape), last_(shape)
 {
     if (shape.planes < fewest_planes)
         throw std::invalid_argument("Motion is followed in sweeps of " + std::to_string(fewest_planes) +
@@ -118,87 +116,136 @@ StillBackground::Noise SweepFollower::small_noise(const DenoiseReport &report) c
     return noise;
 }
 
-std::vector<uint8_t> SweepFollower::look(const StackView &view, std::span<std::byte> memory,
-                                         const DenoiseReport &noise)
+std::span<const uint8_t> SweepFollower::look(const StackView &view, std::span<std::byte> memory,
+                                             const DenoiseReport &noise)
 {
+    std::swap(small_, last_);
     small_.take(pictures_of(view, memory));
-    silhouettes_ = background_.follow(small_, small_noise(noise));
-    return held_tiles();
+    background_.follow(small_, last_, small_noise(noise));
+    hold_tiles();
+    return holds_ ? std::span<const uint8_t>(held_) : std::span<const uint8_t>();
 }
 
 /* A tile is kept if any of its pixels or of its neighbours' is: what comes near there next sweep must not
  * find the background forgotten. It is filled wherever that is known, with the same noise as around it. */
-std::vector<uint8_t> SweepFollower::held_tiles()
+void SweepFollower::hold_tiles()
 {
+    const Silhouettes &found = background_.found();
     const int across = static_cast<int>(shape_.width + tile_pixels - 1) / tile_pixels;
     const int down = static_cast<int>(shape_.height + tile_pixels - 1) / tile_pixels;
-    std::vector<uint8_t> tiles(static_cast<size_t>(across * down) * shape_.planes);
     const auto tile_of = [this](int at) { return at * small_.factor() / tile_pixels; };
-    filled_.clear();
-    for (size_t z = 0; z < silhouettes_.held.size(); z++) {
-        const cv::Mat1b &held = silhouettes_.held[z];
-        filled_.emplace_back(cv::Mat1b::zeros(held.size()));
+    filled_.resize(shape_.planes);
+    for (cv::Mat1b &filled : filled_) {
+        if (filled.size() != small_.size())
+            filled = cv::Mat1b::zeros(small_.size());
+        else if (!filled_where_.empty())
+            filled(filled_where_).setTo(0);
+    }
+    filled_where_ = {};
+    if (std::exchange(holds_, false))
+        std::fill(held_.begin(), held_.end(), uint8_t{0});
+    if (found.where.empty() || found.is_whole)
+        return;
+
+    held_.resize(static_cast<size_t>(across * down) * shape_.planes);
+    const int around = 2 * std::max(tile_pixels / small_.factor(), 1); /* the neighbours' pixels */
+    filled_where_ = cv::Rect(found.where.x - around, found.where.y - around, found.where.width + 2 * around,
+                             found.where.height + 2 * around) &
+                    cv::Rect({}, small_.size());
+    for (unsigned z = 0; z < shape_.planes; z++) {
+        const cv::Mat1b held = found.held[z](found.where);
         if (cv::countNonZero(held) == 0)
             continue;
-        cv::Mat1b plane(down, across, tiles.data() + z * static_cast<size_t>(across * down));
+        holds_ = true;
+        cv::Mat1b plane(down, across, held_.data() + z * static_cast<size_t>(across * down));
         for (int y = 0; y < held.rows; y++)
             for (int x = 0; x < held.cols; x++)
-                plane(tile_of(y), tile_of(x)) |= held(y, x);
+                plane(tile_of(y + found.where.y), tile_of(x + found.where.x)) |= held(y, x);
         cv::dilate(plane, plane, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-        for (int y = 0; y < held.rows; y++)
-            for (int x = 0; x < held.cols; x++)
-                filled_[z](y, x) = silhouettes_.known[z](y, x) & plane(tile_of(y), tile_of(x));
+        for (int y = filled_where_.y; y < filled_where_.y + filled_where_.height; y++)
+            for (int x = filled_where_.x; x < filled_where_.x + filled_where_.width; x++)
+                filled_[z](y, x) = found.known[z](y, x) & plane(tile_of(y), tile_of(x));
     }
-    return tiles;
 }
 
-/* Where something passes in plane z, 0 to 1 as pixels of the component: it covers what is known. */
-cv::Mat1f SweepFollower::filled(unsigned z, const ObjectMotion &motion, double scale,
-                                const cv::Size &size) const
+/* What an object of the small pictures is in a component's. */
+ObjectsOfComponent SweepFollower::objects_of(size_t component, const ObjectMotion &motion) const
 {
-    cv::Mat1f passes;
-    cv::Mat1b(filled_[z](motion.where) & (1 - motion.stands)).convertTo(passes, CV_32F, 2.0);
-    return cv::min(cv::Mat1f(enlarged(passes, scale, size)), 1.0F);
+    ObjectsOfComponent objects;
+    objects.side = small_.factor() / static_cast<int>(shape_.components()[component].subsampling);
+    const cv::Rect part = shown_part(cv::Mat1b(motion.objects > 0.0F));
+    if (part.empty())
+        return objects;
+    objects.where = enlarged(part + motion.where.tl(), objects.side);
+    objects.velocity = enlarged(cv::Mat2f(motion.velocity(part)), objects.side) * objects.side;
+    objects.objects = enlarged(cv::Mat1f(motion.objects(part)), objects.side);
+    return objects;
 }
 
-void SweepFollower::follow_component(size_t c, const std::vector<std::vector<cv::Mat>> &pictures,
-                                     const ObjectMotion &motion, StackDenoiser &denoiser) const
+/* Where something passes in plane z it covers what is known: that takes its place. */
+SweepFollower::Fill SweepFollower::fill_of(size_t component, unsigned z, const ObjectMotion &motion) const
 {
-    const double scale = small_.factor() / static_cast<double>(shape_.components()[c].subsampling);
-    const ObjectsOfComponent objects = for_component(motion, scale, pictures.front()[c].size());
-    std::vector<cv::Mat> backgrounds;
-    for (unsigned z = 0; z < shape_.planes; z++) {
-        const cv::Mat &picture = pictures[z][c];
-        cv::Mat rows(objects.where.height, picture.cols, picture.type());
-        denoiser.background(c, z, static_cast<uint32_t>(objects.where.y),
-                            {reinterpret_cast<std::byte *>(rows.data), rows.total() * rows.elemSize()});
-        backgrounds.push_back(rows.colRange(objects.where.x, objects.where.x + objects.where.width));
-    }
-    cv::parallel_for_(cv::Range(0, static_cast<int>(shape_.planes)), [&](const cv::Range &range) {
-        for (int i = range.start; i < range.end; i++) {
-            const auto z = static_cast<unsigned>(i);
-            const cv::Mat &picture = pictures[z][c];
-            const cv::Mat moved =
-                moved_picture(picture, objects, motion.farthest, z - middle_of_sweep(shape_.planes));
-            const cv::Mat1f fill = filled(z, motion, scale, objects.where.size());
-            if (picture.depth() == CV_16U)
-                compose<uint16_t>(picture(objects.where), moved, backgrounds[z], objects.objects, fill);
-            else
-                compose<uint8_t>(picture(objects.where), moved, backgrounds[z], objects.objects, fill);
-        }
-    });
+    Fill fill{{component, z, 0, 0, 0, 0, {}}, {}, {}};
+    const cv::Mat1b passes = filled_[z](motion.where) & (1 - motion.stands);
+    const cv::Rect part = shown_part(passes);
+    if (part.empty())
+        return fill;
+    const Component of = shape_.components()[component];
+    const int side = small_.factor() / static_cast<int>(of.subsampling);
+    cv::Mat1f share;
+    passes(part).convertTo(share, CV_32F, 2.0);
+    fill.share = enlarged(share, side);
+    fill.where = enlarged(part + motion.where.tl(), side);
+    fill.background.x = static_cast<uint32_t>(fill.where.x) * of.channels;
+    fill.background.y = static_cast<uint32_t>(fill.where.y);
+    fill.background.width = static_cast<uint32_t>(fill.where.width) * of.channels;
+    fill.background.height = static_cast<uint32_t>(fill.where.height);
+    return fill;
+}
+
+/* Where there is an object, the moved picture; where one passes, the background; else the picture itself. */
+void SweepFollower::compose(cv::Mat picture, unsigned z, const ObjectMotion &motion,
+                            const ObjectsOfComponent &objects, Fill &fill) const
+{
+    cv::Mat moved;
+    if (!objects.where.empty())
+        moved = moved_picture(picture, objects, motion.farthest, z - middle_of_sweep(shape_.planes));
+    if (!fill.where.empty())
+        blend(picture(fill.where), cv::Mat(fill.where.size(), picture.type(), fill.background.samples.data()),
+              fill.share);
+    if (!objects.where.empty())
+        blend(picture(objects.where), moved, objects.objects);
 }
 
 void SweepFollower::follow(const StackView &view, std::span<std::byte> memory, StackDenoiser &denoiser)
 {
-    if (silhouettes_.moved <= 0.0 || silhouettes_.is_whole)
+    const Silhouettes &found = background_.found();
+    if (found.moved <= 0.0 || found.is_whole)
         return;
-    const ObjectMotion motion = find_motion(small_, silhouettes_);
+    const ObjectMotion motion = find_motion(small_, found);
     if (motion.where.empty())
         return;
+    const size_t components = shape_.components().size();
+    std::vector<ObjectsOfComponent> objects;
+    std::vector<Fill> fills;
+    std::vector<BackgroundPart> parts;
+    for (size_t c = 0; c < components; c++) {
+        objects.push_back(objects_of(c, motion));
+        for (unsigned z = 0; z < shape_.planes; z++) {
+            fills.push_back(fill_of(c, z, motion));
+            parts.push_back(fills.back().background);
+        }
+    }
+    denoiser.background(parts);
     const auto pictures = pictures_of(view, memory);
-    for (size_t c = 0; c < shape_.components().size(); c++)
-        follow_component(c, pictures, motion, denoiser);
+    cv::parallel_for_(cv::Range(0, static_cast<int>(fills.size())), [&](const cv::Range &range) {
+        for (int i = range.start; i < range.end; i++) {
+            const auto at = static_cast<size_t>(i);
+            const size_t c = at / shape_.planes, z = at % shape_.planes;
+            fills[at].background.samples = std::move(parts[at].samples);
+            compose(pictures[z][c], static_cast<unsigned>(z), motion, objects[c], fills[at]);
+        }
+    });
 }
 
 } // namespace dff

@@ -7,6 +7,14 @@
 
 namespace dff {
 
+/* Pixels of a component's picture that objects cover in the middle of the sweep, and how they move. */
+struct ObjectsOfComponent {
+    cv::Rect where;
+    int side;           /* pixels of the component a pixel of the small pictures */
+    cv::Mat2f velocity; /* a plane */
+    cv::Mat1f objects;  /* 0 to 1, not clipped */
+};
+
 /* Motion inside the sweep: turns the planes of one sweep, taken one after the other, into planes as if all
  * were taken at the middle of it. Objects that move are followed along their path; what they cover in a plane
  * is filled with the background that the denoiser has averaged. Where nothing moves, not a bit changes. */
@@ -19,8 +27,10 @@ public:
     explicit SweepFollower(const StackShape &shape);
 
     /* Before the sweep is denoised: looks for what moves. Gives the tiles of 8x8 pixels of each plane whose
-     * background has to be kept, as StackDenoiser::denoise() takes them. `noise` of each component. */
-    std::vector<uint8_t> look(const StackView &view, std::span<std::byte> memory, const DenoiseReport &noise);
+     * background has to be kept, as StackDenoiser::denoise() takes them: none where nothing moves. `noise` of
+     * each component. */
+    std::span<const uint8_t> look(const StackView &view, std::span<std::byte> memory,
+                                  const DenoiseReport &noise);
 
     /* Afterwards: draws what moves where it is in the middle of the sweep, into `memory`. */
     void follow(const StackView &view, std::span<std::byte> memory, StackDenoiser &denoiser);
@@ -28,20 +38,30 @@ public:
     void forget() { background_.forget(); }
 
     /* Part of the picture that moved in the last sweep, 0 to 1. */
-    double moved() const { return silhouettes_.moved; }
+    double moved() const { return background_.found().moved; }
 
 private:
     StillBackground::Noise small_noise(const DenoiseReport &noise) const;
-    std::vector<uint8_t> held_tiles();
-    cv::Mat1f filled(unsigned z, const ObjectMotion &motion, double scale, const cv::Size &size) const;
-    void follow_component(size_t c, const std::vector<std::vector<cv::Mat>> &pictures,
-                          const ObjectMotion &motion, StackDenoiser &denoiser) const;
+    /* What takes the place of what passes, in one component of one plane. */
+    struct Fill {
+        BackgroundPart background;
+        cv::Rect where;  /* pixels of the component */
+        cv::Mat1f share; /* 0 to 1, not clipped */
+    };
+
+    void hold_tiles();
+    ObjectsOfComponent objects_of(size_t component, const ObjectMotion &motion) const;
+    Fill fill_of(size_t component, unsigned z, const ObjectMotion &motion) const;
+    void compose(cv::Mat picture, unsigned z, const ObjectMotion &motion, const ObjectsOfComponent &objects,
+                 Fill &fill) const;
 
     StackShape shape_;
-    SmallStack small_;
+    SmallStack small_, last_; /* this sweep and the one before */
     StillBackground background_;
-    Silhouettes silhouettes_;
+    std::vector<uint8_t> held_;     /* [plane][tile] */
+    bool holds_ = false;            /* held_ has anything but 0 in it */
     std::vector<cv::Mat1b> filled_; /* shows the background, unless an object is before it */
+    cv::Rect filled_where_;         /* outside of it nothing is filled */
 };
 
 } // namespace dff

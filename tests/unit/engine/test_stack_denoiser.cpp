@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "engine/luma.h"
 #include "engine/stack_denoiser.h"
 #include "test_stack.h"
 
@@ -296,6 +297,25 @@ TEST_P(Formats, noise_is_told)
     const DenoiseReport report = denoiser.report();
     for (const NoiseCurve &curve : report.noise)
         EXPECT_NEAR(std::sqrt(curve[8]) * report.sample_unit, 6.0, 0.9);
+}
+
+/* The mean over more sweeps than `frames` has less than 1 / frames of their variance. */
+TEST_P(Formats, what_noise_is_left_is_told)
+{
+    const StackShape shape{GetParam().format, 320, 240, 2};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(device_with(GetParam().style), shape);
+    for (unsigned t = 0; t < 14; t++) {
+        TestStack stack = noisy(clean, 6.0, t);
+        denoise(denoiser, stack, {4, 1.0F});
+        const auto told = denoiser.report().left;
+        ASSERT_EQ(told.has_value(), t > 0);
+        if (!told)
+            continue;
+        const bool is_mixed = is_interleaved(shape.format); /* luma of three samples that are noisy apart */
+        const double is = std::sqrt(mean_square(stack, clean)) * (is_mixed ? 0.669 : 1.0);
+        EXPECT_NEAR(*told / is, 1.0, 0.15) << "stack " << t;
+    }
 }
 
 TEST_P(Formats, a_cut_shows_the_new_scene_alone)
