@@ -27,10 +27,11 @@ def needed():
 
 def load_types():
     """Here and now what streaming threads will need: two that load one at the same time get two."""
-    from gi.repository import Gst, GstDff, GstVideo
+    from gi.repository import Gst, GstDff, GstSdp, GstVideo, GstWebRTC
     for module, names in ((Gst, 'Buffer BufferFlags Caps ClockTime Event FlowReturn Format Message PadProbeInfo PadProbeReturn Promise PromiseResult '
                                 'Query Sample Segment Structure SystemClock'),
-                          (GstVideo, 'VideoFormatInfo VideoInfo VideoMeta VideoFrameFlags'), (GstDff, 'DepthMeta DepthUnit FocalStackMeta FocusInfo')):
+                          (GstVideo, 'VideoFormatInfo VideoInfo VideoMeta VideoFrameFlags'), (GstDff, 'DepthMeta DepthUnit FocalStackMeta FocusInfo'),
+                          (GstSdp, 'SDPMessage SDPResult'), (GstWebRTC, 'WebRTCICEConnectionState WebRTCSDPType WebRTCSessionDescription')):
         for name in names.split():
             getattr(module, name, None)
 

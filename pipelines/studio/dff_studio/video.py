@@ -139,15 +139,15 @@ class Viewer:
         return ghost
 
     def then(self, function):
-        return Gst.Promise.new_with_change_func(lambda promise, *_: function(promise), None)
+        """By the main loop: two threads that meet a type for the first time would each make half of it."""
+        return Gst.Promise.new_with_change_func(lambda promise, *_: GLib.idle_add(function, promise), None)
 
     def take_offer(self, promise):
-        peer = self.peer
-        if promise.wait() != Gst.PromiseResult.REPLIED or peer is None:
+        if promise.wait() != Gst.PromiseResult.REPLIED or self.gone:
             return
         reply = promise.get_reply()  # which owns the offer
         offer = reply.get_value('offer')
-        peer.emit('set-local-description', offer, None)
+        self.peer.emit('set-local-description', offer, None)
         self.send({'type': 'offer', 'sdp': offer.sdp.as_text()})
 
     def take_answer(self, text):
@@ -155,7 +155,7 @@ class Viewer:
         if result != GstSdp.SDPResult.OK:
             return
         answer = GstWebRTC.WebRTCSessionDescription.new(GstWebRTC.WebRTCSDPType.ANSWER, sdp)
-        self.peer.emit('set-remote-description', answer, self.then(lambda _: GLib.idle_add(self.video.ask_for_whole_picture)))
+        self.peer.emit('set-remote-description', answer, self.then(lambda _: self.video.ask_for_whole_picture()))
 
     def take_candidate(self, line, text):
         self.peer.emit('add-ice-candidate', line, text)
