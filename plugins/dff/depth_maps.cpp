@@ -4,6 +4,7 @@
 
 #include "gstcl/blur_step.h"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -52,6 +53,14 @@ GstBuffer *DepthMaps::Map::release()
     return std::exchange(buffer_, nullptr);
 }
 
+/* What pixels mean that are differences of depth. */
+static void add_deviation_meta(GstBuffer *buffer, GstDepthInfo depth)
+{
+    depth.scale = std::abs(depth.scale);
+    depth.offset = 0.0;
+    gst_buffer_add_depth_meta(buffer, &depth);
+}
+
 DepthMaps::DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, const GstVideoInfo &stack,
                      const GstDepthInfo &depth, const StreamSegment &segment)
 {
@@ -60,8 +69,10 @@ DepthMaps::DepthMaps(const std::vector<std::shared_ptr<DepthOutput>> &outputs, c
             continue;
         output->prepare(stack, depth, segment);
         maps_.push_back(std::make_unique<Map>(output, stack));
-        if (output->format() == GST_VIDEO_FORMAT_GRAY16_LE)
+        if (output->has_depth())
             gst_buffer_add_depth_meta(maps_.back()->buffer(), &depth);
+        else if (output->tells_uncertainty())
+            add_deviation_meta(maps_.back()->buffer(), depth);
     }
 }
 
@@ -76,6 +87,8 @@ DepthOutputs DepthMaps::outputs() const
             outputs.confidence = map->picture();
         else if (g_str_equal(name, "motion"))
             outputs.motion = map->picture();
+        else if (map->output().tells_uncertainty())
+            outputs.uncertainty = map->picture();
         else
             outputs.depth = map->picture();
     }

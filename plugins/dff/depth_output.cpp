@@ -54,7 +54,7 @@ void DepthOutput::prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, 
     GST_VIDEO_INFO_FPS_N(&info) = GST_VIDEO_INFO_FPS_N(&stack);
     GST_VIDEO_INFO_FPS_D(&info) = GST_VIDEO_INFO_FPS_D(&stack);
     g_autoptr(GstCaps) caps = gst_video_info_to_caps(&info);
-    if (format_ == GST_VIDEO_FORMAT_GRAY16_LE)
+    if (has_depth())
         gst_depth_info_to_caps(&depth, caps);
 
     if (!caps_ || !gst_caps_is_equal(caps, caps_)) {

@@ -27,10 +27,13 @@ public:
 
     GstPad *pad() const { return pad_; }
     GstVideoFormat format() const { return format_; }
+    /* Whether its maps are of depth, and not of how uncertain that is, or of 8 bits. */
+    bool has_depth() const { return format_ == GST_VIDEO_FORMAT_GRAY16_LE && !tells_uncertainty(); }
+    bool tells_uncertainty() const { return g_str_equal(GST_PAD_NAME(pad_), "uncertainty"); }
     bool is_linked() const { return gst_pad_is_linked(pad_); }
 
     /* Sends stream-start, caps and segment where they are not the last that were sent. `depth` stands in the
-     * caps of 16-bit maps. */
+     * caps of depth. */
     void prepare(const GstVideoInfo &stack, const GstDepthInfo &depth, const StreamSegment &segment);
 
     /* Sends what has to come before the end, if it has not: stream-start and segment, even where no picture

@@ -12,6 +12,13 @@
  * The request pads `sparse` (depth before it is filled, 0 = unknown), `confidence` (GRAY8) and `motion`
  * (GRAY8, 255 = moved during the sweep) cost nothing while they are not linked. Put a queue on every branch.
  *
+ * The request pad `uncertainty` (GRAY16_LE) gives one standard deviation of each pixel of the depth map, in
+ * its scale: multiplied by the scale of its GstDepthMeta (without the offset) it is in the depth's unit. It
+ * grows with noise, lack of texture, beside depth edges, and is large where depth is filled and not seen;
+ * about 68 % of pixels lie within one of them and 95 % within two. It is of one stack, whatever `steady`
+ * makes of it, and knows nothing of a lens that is not where its calibration says. 0 where there is no depth.
+ * method=paper does not tell it.
+ *
  * A lens that does not move gives a full depth map all the same. Its confidence is next to nothing then, and
  * a warning says once that no plane is sharper than the others.
  *
@@ -24,6 +31,10 @@
  *
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! dffdepth ! videoconvert ! fakesink
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=3 far=0.5 ! focalstackmux ! dffdepth name=d
+ * unit=millimetre \
+ *     d.src ! queue ! videoconvert ! pngenc ! filesink location=millimetres.png \
+ *     d.uncertainty ! queue ! videoconvert ! pngenc ! filesink location=give-or-take.png
  * ]|
  */
 #include "dffdepth.h"
@@ -59,6 +70,9 @@ static GstStaticPadTemplate confidence_template =
     GST_STATIC_PAD_TEMPLATE("confidence", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
 static GstStaticPadTemplate motion_template =
     GST_STATIC_PAD_TEMPLATE("motion", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY8")));
+
+static GstStaticPadTemplate uncertainty_template = GST_STATIC_PAD_TEMPLATE(
+    "uncertainty", GST_PAD_SRC, GST_PAD_REQUEST, GST_STATIC_CAPS(MAP_CAPS("GRAY16_LE")));
 
 static dff::DepthSettings settings_of(GstDffDepthState &state)
 {
@@ -191,8 +205,9 @@ static GstPad *gst_dff_depth_request_new_pad(GstElement *element, GstPadTemplate
     GstPad *pad = gst_pad_new_from_template(templ, templ->name_template);
     gst_pad_set_active(pad, TRUE);
     add_output(GST_DFF_DEPTH(element), pad,
-               g_str_equal(templ->name_template, "sparse") ? GST_VIDEO_FORMAT_GRAY16_LE
-                                                           : GST_VIDEO_FORMAT_GRAY8);
+               g_str_equal(templ->name_template, "sparse") || g_str_equal(templ->name_template, "uncertainty")
+                   ? GST_VIDEO_FORMAT_GRAY16_LE
+                   : GST_VIDEO_FORMAT_GRAY8);
     return pad;
 }
 
@@ -254,6 +269,7 @@ static GstStateChangeReturn gst_dff_depth_change_state(GstElement *element, GstS
         state.last_warning.clear();
         state.peaks = {};
         state.told_of_no_peaks = false;
+        state.told_of_no_uncertainty = false;
         state.outputs.restart();
         const std::lock_guard lock(state.mutex);
         state.statistics = {};
@@ -318,8 +334,8 @@ static void gst_dff_depth_class_init(GstDffDepthClass *klass)
     dff::install_depth_properties(object_class);
     dff::DepthStatistics::install_property(object_class, property_stats);
 
-    for (GstStaticPadTemplate *pad_template :
-         {&sink_template, &src_template, &sparse_template, &confidence_template, &motion_template})
+    for (GstStaticPadTemplate *pad_template : {&sink_template, &src_template, &sparse_template,
+                                               &confidence_template, &motion_template, &uncertainty_template})
         gst_element_class_add_static_pad_template(element_class, pad_template);
     gst_element_class_set_static_metadata(element_class, "Depth from focus", "Filter/Analyzer/Video",
                                           "Computes a depth map from each focal stack",

@@ -66,6 +66,13 @@ static bool compute(GstDffDepth *self, const dff::StackView &view, GstBuffer *st
         if (is_due && !outputs.confidence.pixels)
             outputs.confidence = {state.peaks.room(size_t{view.shape.width} * view.shape.height).data(),
                                   view.shape.width};
+        if (outputs.uncertainty.pixels && !state.depth.tells_uncertainty() &&
+            !std::exchange(state.told_of_no_uncertainty, true))
+            GST_ELEMENT_WARNING(
+                self, STREAM, NOT_IMPLEMENTED,
+                ("method=paper does not tell how uncertain depth is, and the pad uncertainty gives 0: "
+                 "use method=volume"),
+                (nullptr));
         const bool known = state.depth.compute(view, outputs);
         if (is_due)
             look_for_peaks(self, view.shape, outputs.confidence);

@@ -45,6 +45,7 @@ struct GstDffDepthState {
     std::string last_warning;
     dff::PeakWatch peaks;
     bool told_of_no_peaks = false;
+    bool told_of_no_uncertainty = false;
 };
 
 struct _GstDffDepth {

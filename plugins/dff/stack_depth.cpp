@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <span>
 #include <system_error>
 
 namespace dff {
@@ -128,13 +129,28 @@ std::optional<std::string> StackDepth::take_positions(GstBuffer *stack)
 
 bool StackDepth::compute(const StackView &view, const DepthOutputs &outputs)
 {
-    if (!engine_->compute(view, outputs))
+    DepthOutputs all = outputs;
+    if (field_ && outputs.uncertainty.pixels && !outputs.depth.pixels) {
+        unseen_depth_.resize(size_t{view.shape.width} * view.shape.height);
+        all.depth = {std::as_writable_bytes(std::span(unseen_depth_)).data(),
+                     view.shape.width * sizeof(uint16_t)};
+    }
+    if (!engine_->compute(view, all))
         return false;
-    keep_steady(view, outputs.depth);
-    for (const OutputPicture &map : {outputs.depth, outputs.sparse})
-        if (field_ && map.pixels)
-            field_->apply(map.pixels, map.stride);
+    keep_steady(view, all.depth);
+    if (field_)
+        bend(all);
     return true;
+}
+
+void StackDepth::bend(const DepthOutputs &outputs)
+{
+    for (const OutputPicture &map : {outputs.depth, outputs.sparse})
+        if (map.pixels)
+            field_->apply(map.pixels, map.stride);
+    if (outputs.uncertainty.pixels)
+        field_->apply_to_deviations(outputs.uncertainty.pixels, outputs.uncertainty.stride,
+                                    outputs.depth.pixels, outputs.depth.stride);
 }
 
 void StackDepth::keep_steady(const StackView &view, const OutputPicture &depth)

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace dff {
 
@@ -57,6 +58,8 @@ public:
     /* FocusEngine::compute(), and the depth kept steady as the settings want it. */
     bool compute(const StackView &view, const DepthOutputs &outputs);
 
+    bool tells_uncertainty() const { return FocusEngine::tells_uncertainty(settings_.parameters.method); }
+
     /* Where the stacks come from, for Steadiness::Auto. */
     void set_live(bool is_live) { is_live_ = is_live; }
 
@@ -69,6 +72,7 @@ public:
     std::optional<float> residual() const { return engine_ ? engine_->residual() : std::nullopt; }
 
 private:
+    void bend(const DepthOutputs &outputs);
     void keep_steady(const StackView &view, const OutputPicture &depth);
     PlanePositions positions_of(GstBuffer *stack) const;
     DepthEncoder flat_encoder(const PlanePositions &positions);
@@ -82,9 +86,10 @@ private:
     PlanePositions positions_;
     std::optional<CameraCalibration> calibration_;
     std::optional<FocusCalibration> focus_;
-    std::optional<CurvedField> field_;  /* of encoder_, which then is as if it were flat */
-    std::optional<SteadyDepth> steady_; /* while it is wanted */
-    DepthJumps jumps_{};                /* of encoder_ */
+    std::optional<CurvedField> field_;   /* of encoder_, which then is as if it were flat */
+    std::vector<uint16_t> unseen_depth_; /* where only its uncertainty is wanted */
+    std::optional<SteadyDepth> steady_;  /* while it is wanted */
+    DepthJumps jumps_{};                 /* of encoder_ */
     bool is_live_ = false;
 };
 

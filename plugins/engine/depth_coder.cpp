@@ -7,12 +7,13 @@
 namespace dff {
 
 DepthCoder::DepthCoder(CommandQueue &queue, const StackShape &shape)
-    : queue_(queue), shape_(shape), codes_(queue.allocate((DepthScale::max_pixel + 1) * sizeof(cl_ushort)))
+    : queue_(queue), shape_(shape), codes_(queue.allocate((DepthScale::max_pixel + 1) * sizeof(cl_ushort))),
+      encoder_(DepthEncoder::index(shape.planes))
 {
     const Program program(queue.device(), "depth_code");
     code_positions_ = program.kernel("code_positions");
     code_planes_ = program.kernel("code_planes");
-    set_encoder(DepthEncoder::index(shape.planes));
+    set_encoder(encoder_);
 }
 
 void DepthCoder::set_encoder(const DepthEncoder &encoder)
@@ -25,6 +26,23 @@ void DepthCoder::set_encoder(const DepthEncoder &encoder)
         is_linear_ = is_linear_ && codes[i] == i;
     }
     queue_.commands().enqueueWriteBuffer(codes_, CL_TRUE, 0, codes.size() * sizeof(cl_ushort), codes.data());
+    encoder_ = encoder;
+    has_slopes_ = false;
+}
+
+const cl::Buffer &DepthCoder::slopes()
+{
+    if (has_slopes_)
+        return slopes_;
+    std::vector<cl_float> slopes(DepthScale::max_pixel + 1, 0.0f);
+    for (unsigned i = 1; i < slopes.size(); i++)
+        slopes[i] = static_cast<cl_float>(encoder_.slope(*encoder_.decode(static_cast<uint16_t>(i))));
+    if (!slopes_())
+        slopes_ = queue_.allocate(slopes.size() * sizeof(cl_float));
+    queue_.commands().enqueueWriteBuffer(slopes_, CL_TRUE, 0, slopes.size() * sizeof(cl_float),
+                                         slopes.data());
+    has_slopes_ = true;
+    return slopes_;
 }
 
 void DepthCoder::code_positions(const cl::Buffer &positions, const cl::Buffer &depth)

@@ -19,6 +19,9 @@ public:
     /* ushort[65536]: the pixel for each position, as depth_code.cl numbers them. */
     const cl::Buffer &codes() const { return codes_; }
 
+    /* float[65536]: by how many steps of the map a plane changes the pixel, at each pixel. */
+    const cl::Buffer &slopes();
+
     /* A position's pixel is its number, so that nobody needs to look it up. */
     bool is_linear() const { return is_linear_; }
 
@@ -32,7 +35,9 @@ private:
     CommandQueue &queue_;
     StackShape shape_;
     cl::Kernel code_positions_, code_planes_;
-    cl::Buffer codes_;
+    cl::Buffer codes_, slopes_;
+    DepthEncoder encoder_;
+    bool has_slopes_ = false; /* of encoder_ */
     bool is_linear_ = true;
 };
 

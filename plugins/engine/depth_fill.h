@@ -15,6 +15,10 @@ public:
     /* Changes matching.u() in place and mirrors its sides. t: of the noise, in which it reaches farther. */
     void run(const SemiGlobalMatching &matching, float t, float blur_step);
 
+    /* Low pictures [2], of the last run: what it filled with times the evidence around, and that evidence,
+     * the smoothed square of the confidence. */
+    const cl::Buffer &solved() const { return pair_; }
+
     /* float: the 90th percentile of the confidence. */
     const cl::Buffer &high_confidence() const { return high_confidence_; }
 

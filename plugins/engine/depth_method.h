@@ -15,6 +15,7 @@ public:
         bool sparse = false;
         bool confidence = false;
         bool motion = false;
+        bool uncertainty = false;
     };
 
     virtual ~DepthMethod() = default;
@@ -26,6 +27,9 @@ public:
     virtual const cl::Buffer &sparse() const = 0;     /* ushort, 0 where unknown */
     virtual const cl::Buffer &confidence() const = 0; /* uchar: 255 c */
     virtual const cl::Buffer &motion() const = 0;     /* uchar: 255 where it moved */
+
+    /* ushort: one standard deviation, in steps of the depth map; nullptr where the method tells none. */
+    virtual const cl::Buffer *uncertainty() const { return nullptr; }
 
     /* By how many pixels the circle of confusion grows from plane to plane in the last stack; 0 where that is
      * not known. */

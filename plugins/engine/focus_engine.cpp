@@ -7,6 +7,8 @@
 #include "engine/paper_method.h"
 #include "engine/volume_method.h"
 
+#include <cstring>
+
 namespace dff {
 
 namespace {
@@ -69,7 +71,8 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
         method_->run(stack_, coder_,
                      {.sparse = outputs.sparse.pixels != nullptr,
                       .confidence = outputs.confidence.pixels != nullptr,
-                      .motion = outputs.motion.pixels != nullptr},
+                      .motion = outputs.motion.pixels != nullptr,
+                      .uncertainty = outputs.uncertainty.pixels != nullptr},
                      depth);
         if (depth() == depth_())
             read(depth, sizeof(cl_ushort), outputs.depth);
@@ -79,6 +82,10 @@ bool FocusEngine::compute(const StackView &stack, const DepthOutputs &outputs)
             read(method_->confidence(), sizeof(cl_uchar), outputs.confidence);
         if (outputs.motion.pixels)
             read(method_->motion(), sizeof(cl_uchar), outputs.motion);
+        if (outputs.uncertainty.pixels && method_->uncertainty())
+            read(*method_->uncertainty(), sizeof(cl_ushort), outputs.uncertainty);
+        else if (outputs.uncertainty.pixels)
+            blank(outputs.uncertainty);
         queue_.commands().enqueueReadBuffer(depth, CL_FALSE, 0, sizeof first, &first);
         if (method_->residual())
             queue_.commands().enqueueReadBuffer(*method_->residual(), CL_FALSE, 0, sizeof residual,
@@ -99,6 +106,13 @@ cl::Buffer FocusEngine::depth_for(const OutputPicture &output)
     if (!depth_())
         depth_ = queue_.allocate(bytes);
     return depth_;
+}
+
+/* A map that the method does not tell. */
+void FocusEngine::blank(const OutputPicture &output) const
+{
+    for (uint32_t y = 0; y < shape_.height; y++)
+        std::memset(output.pixels + y * output.stride, 0, shape_.width * sizeof(cl_ushort));
 }
 
 void FocusEngine::read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output)

@@ -22,6 +22,8 @@ struct DepthOutputs {
     OutputPicture sparse;     /* 16 bits, 0 where unknown */
     OutputPicture confidence; /* 8 bits: 255 c */
     OutputPicture motion;     /* 8 bits: 255 where it moved during the sweep */
+    OutputPicture
+        uncertainty; /* 16 bits: one standard deviation in steps of the depth map, 0 where that is */
 };
 
 /* Depth from focal stacks of one shape. Not to be used from two threads at once. */
@@ -42,6 +44,9 @@ public:
      * then 0. Throws EngineError. */
     bool compute(const StackView &stack, const DepthOutputs &outputs);
 
+    /* Whether a method tells how uncertain depth is; where not, that map is 0. */
+    static bool tells_uncertainty(Method method) { return method == Method::Volume; }
+
     /* Of the last stack. */
     const StageTimes &times() const { return times_; }
 
@@ -55,6 +60,7 @@ public:
 
 private:
     cl::Buffer depth_for(const OutputPicture &output);
+    void blank(const OutputPicture &output) const;
     void read(const cl::Buffer &picture, size_t pixel_bytes, const OutputPicture &output);
 
     std::shared_ptr<Device> device_;

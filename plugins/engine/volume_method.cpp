@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/volume_method.h"
 
+#include <optional>
+
 namespace dff {
 
 /* All of one scale. */
@@ -29,6 +31,7 @@ struct VolumeMethod::Stages {
     SubPlane sub_plane;
     DepthFill fill;
     JointUpsampling upsampling;
+    std::optional<Uncertainty> uncertainty; /* once it was wanted */
 };
 
 VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters)
@@ -49,18 +52,23 @@ const cl::Buffer &VolumeMethod::confidence() const
     return stages_->upsampling.confidence();
 }
 
+const cl::Buffer *VolumeMethod::uncertainty() const
+{
+    return stages_->uncertainty ? &stages_->uncertainty->map() : nullptr;
+}
+
 uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &parameters)
 {
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 15 * planes + 9 + 2 * 33; /* of shorts; one of floats is two */
+    const uint64_t pictures = 15 * planes + 9 + 2 * 35; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const uint64_t luma = is_interleaved(shape.format) ? planes * sample_bytes(shape.format) : 0;
     const uint64_t motion = pixels * (luma + 1);
     return low.height * row * pictures + CostVolume::scratch_bytes(low) + GuidedFilter::scratch_bytes(low) +
            FocusVolume::scratch_bytes(shape, low) + FocusPyramid::memory(low) +
-           pixels * (2 * sizeof(cl_ushort) + 1) + motion;
+           pixels * (3 * sizeof(cl_ushort) + 1) + motion;
 }
 
 void VolumeMethod::measure(const StackBuffer &stack)
@@ -93,10 +101,17 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     s.matching.run(s.filter.filtered(), s.guide.guide(), s.noise);
     s.doubt.run(s.matching, s.filter.filtered(), s.noise, blur_.step);
     s.sub_plane.run(s.matching.u(), s.focus, s.pyramid, s.noise, blur_.step);
+    if (wanted.uncertainty) {
+        if (!s.uncertainty)
+            s.uncertainty.emplace(queue_, shape_, s.low);
+        s.uncertainty->remember(s.matching.u());
+    }
     s.fill.run(s.matching, blur_.t, blur_.step);
     s.guide.run_at(s.matching.u(), s.small, s.noise);
     s.upsampling.run(s.matching.u(), s.guide, s.cost, s.noise, stack, coder, depth);
 
+    if (wanted.uncertainty)
+        s.uncertainty->run(s.matching.u(), s.fill, s.filter.filtered(), s.noise, coder, depth);
     const bool mask_motion = wanted.sparse && parameters_.motion_mask;
     if (wanted.motion || mask_motion)
         run_motion(stack);

@@ -10,6 +10,7 @@
 #include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
 #include "engine/sub_plane.h"
+#include "engine/uncertainty.h"
 
 namespace dff {
 
@@ -31,6 +32,7 @@ public:
     const cl::Buffer &confidence() const override;
     const cl::Buffer &motion() const override { return entropy_->moved(); }
     float blur_step() const override { return blur_.step; }
+    const cl::Buffer *uncertainty() const override;
 
 private:
     struct Stages;

@@ -80,6 +80,25 @@ void CurvedField::to_millimetres(uint16_t *row, unsigned y) const
     }
 }
 
+void CurvedField::apply_to_deviations(std::byte *pixels, std::size_t stride, const std::byte *depths,
+                                      std::size_t depth_stride) const
+{
+    const double flat = focus_.vergences.front() - focus_.vergences.back();
+    const auto zoom = static_cast<float>(flat / (near_ - far_)), dioptres = static_cast<float>(flat) / steps;
+    for (unsigned y = 0; y < height_; y++) {
+        auto *row = reinterpret_cast<uint16_t *>(pixels + y * stride);
+        const auto *depth = reinterpret_cast<const uint16_t *>(depths + y * depth_stride);
+        for (unsigned x = 0; x < width_; x++) {
+            const auto deviation = static_cast<float>(row[x]), distance = static_cast<float>(depth[x]);
+            /* d mm = 1000 d / v^2 = mm^2 / 1000 d */
+            const float bent = scale_.unit == DepthUnit::Dioptre
+                                   ? zoom * deviation
+                                   : dioptres * deviation * distance * distance / 1000.0F;
+            row[x] = row[x] == DepthScale::no_value ? row[x] : pixel_of(bent);
+        }
+    }
+}
+
 void CurvedField::apply(std::byte *pixels, std::size_t stride) const
 {
     for (unsigned y = 0; y < height_; y++) {

@@ -26,6 +26,10 @@ public:
     /* Pixels without a value stay so. `stride` is in bytes. */
     void apply(std::byte *pixels, std::size_t stride) const;
 
+    /* The same of standard deviations, by the depths that apply() gave. At least 1 where there are any. */
+    void apply_to_deviations(std::byte *pixels, std::size_t stride, const std::byte *depths,
+                             std::size_t depth_stride) const;
+
 private:
     void to_dioptres(uint16_t *row, unsigned y) const;
     void to_millimetres(uint16_t *row, unsigned y) const;

@@ -75,19 +75,31 @@ DepthEncoder DepthEncoder::micrometre(std::vector<double> positions_um)
     return encoder;
 }
 
+double DepthEncoder::value_at(double z) const
+{
+    if (scale_.unit == DepthUnit::Dioptre)
+        return plan_->power_at(z);
+    if (scale_.unit == DepthUnit::Millimetre)
+        return millimetre_from_dioptre(plan_->power_at(z));
+    return scale_.unit == DepthUnit::Micrometre ? interpolate(positions_um_, z) : z;
+}
+
+double DepthEncoder::slope(double z) const
+{
+    constexpr double around = 0.25; /* planes */
+    const double before = std::max(z - around, 0.0),
+                 after = std::min(z + around, static_cast<double>(planes_ - 1));
+    const double slope = std::abs((value_at(after) - value_at(before)) / scale_.scale) / (after - before);
+    return slope < DepthScale::max_pixel ? slope
+                                         : DepthScale::max_pixel; /* NaN, too, where both lie at infinity */
+}
+
 uint16_t DepthEncoder::encode(double z) const
 {
     if (std::isnan(z))
         return DepthScale::no_value;
     z = std::clamp(z, 0.0, static_cast<double>(planes_ - 1));
-    double value = z;
-    if (scale_.unit == DepthUnit::Dioptre)
-        value = plan_->power_at(z);
-    else if (scale_.unit == DepthUnit::Millimetre)
-        value = millimetre_from_dioptre(plan_->power_at(z));
-    else if (scale_.unit == DepthUnit::Micrometre)
-        value = interpolate(positions_um_, z);
-    const double pixel = std::round((value - scale_.offset) / scale_.scale);
+    const double pixel = std::round((value_at(z) - scale_.offset) / scale_.scale);
     return static_cast<uint16_t>(std::clamp(pixel, 1.0, static_cast<double>(DepthScale::max_pixel)));
 }
 

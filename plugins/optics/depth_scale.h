@@ -54,11 +54,16 @@ public:
     /* Pixel of plane position z; z outside the sweep is clamped, NaN gives DepthScale::no_value. */
     uint16_t encode(double z) const;
 
+    /* By how many pixels the map changes from plane to plane, around plane position z; up to max_pixel. */
+    double slope(double z) const;
+
     /* Plane position of a pixel; empty for DepthScale::no_value. */
     std::optional<double> decode(uint16_t pixel) const;
 
 private:
     DepthEncoder(unsigned planes, DepthScale scale) : planes_(planes), scale_(scale) {}
+
+    double value_at(double z) const;
 
     unsigned planes_;
     DepthScale scale_;

@@ -51,10 +51,14 @@ public:
     {
     }
 
-    const StageTimes *run_depth()
+    const StageTimes *run_depth(bool with_uncertainty = false)
     {
         DepthOutputs outputs;
         outputs.depth = {std::as_writable_bytes(std::span(depth_)).data(), stride()};
+        if (with_uncertainty) {
+            uncertainty_.resize(depth_.size());
+            outputs.uncertainty = {std::as_writable_bytes(std::span(uncertainty_)).data(), stride()};
+        }
         engine_.compute(stack_.view(), outputs);
         times_ = engine_.times();
         return &times_;
@@ -98,7 +102,7 @@ private:
     const BenchStack &stack_;
     FocusEngine engine_;
     AifComposer composer_;
-    std::vector<uint16_t> depth_;
+    std::vector<uint16_t> depth_, uncertainty_;
     std::vector<std::byte> picture_;
     std::vector<RowLayout> layout_;
     StageTimes times_;
@@ -121,6 +125,8 @@ public:
         rows_.push_back({"method=paper", Row::Kind::Ours, 1, [this] { return paper_.run_depth(); }});
         rows_.push_back({"method=paper and AIF", Row::Kind::Ours, 1, [this] { return paper_.run(); }});
         rows_.push_back({"method=volume", Row::Kind::Ours, 1, [this] { return volume_.run_depth(); }});
+        rows_.push_back({"method=volume with uncertainty", Row::Kind::Part, 1,
+                         [this] { return volume_.run_depth(true); }});
         rows_.push_back({"method=volume and AIF", Row::Kind::Ours, 1, [this] { return volume_.run(); }});
         rows_.push_back({"AIF alone, blend=sharp", Row::Kind::Part, 1,
                          [this] { return volume_.compose(AifComposer::Blend::Sharp); }});

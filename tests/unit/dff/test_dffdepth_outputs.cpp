@@ -3,6 +3,7 @@
 #include "../common/complaints.h"
 #include "test_pipeline.h"
 
+#include <algorithm>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
 
@@ -21,14 +22,16 @@ TEST(DffDepthOutputs, every_map_has_a_picture_a_stack)
     TestPipeline pipeline(sweep + "! queue ! appsink name=depth sync=false "
                                   "d.sparse ! queue ! appsink name=sparse sync=false "
                                   "d.confidence ! queue ! appsink name=confidence sync=false "
-                                  "d.motion ! queue ! appsink name=motion sync=false");
+                                  "d.motion ! queue ! appsink name=motion sync=false "
+                                  "d.uncertainty ! queue ! appsink name=uncertainty sync=false");
     pipeline.play();
-    for (const char *sink : {"depth", "sparse", "confidence", "motion"}) {
+    for (const char *sink : {"depth", "sparse", "confidence", "motion", "uncertainty"}) {
         const std::vector<GstSample *> samples = pipeline.pull_all(sink);
         EXPECT_EQ(samples.size(), 5u) << sink;
         for (GstSample *sample : samples) {
             const GstStructure *caps = gst_caps_get_structure(gst_sample_get_caps(sample), 0);
-            const bool is_depth = g_str_equal(sink, "depth") || g_str_equal(sink, "sparse");
+            const bool is_depth =
+                g_str_equal(sink, "depth") || g_str_equal(sink, "sparse") || g_str_equal(sink, "uncertainty");
             EXPECT_STREQ(gst_structure_get_string(caps, "format"), is_depth ? "GRAY16_LE" : "GRAY8");
             EXPECT_EQ(gst_buffer_get_depth_meta(gst_sample_get_buffer(sample)) != nullptr, is_depth);
             gst_sample_unref(sample);
@@ -55,6 +58,65 @@ TEST(DffDepthOutputs, sparse_has_holes_and_the_dense_map_has_none)
     const size_t unknown = zeros("sparse");
     EXPECT_GT(unknown, 128u * 96 / 10);
     EXPECT_LT(unknown, 128u * 96);
+}
+
+namespace {
+
+/* Median of a map's pixels over the first stack. */
+unsigned median_of(TestPipeline &pipeline, const char *sink, GstDepthInfo *facts)
+{
+    g_autoptr(GstSample) sample = pipeline.pull(sink);
+    GstBuffer *buffer = gst_sample_get_buffer(sample);
+    gst_depth_meta_get_depth(gst_buffer_get_depth_meta(buffer), facts);
+    GstMapInfo map;
+    gst_buffer_map(buffer, &map, GST_MAP_READ);
+    std::vector<unsigned> pixels;
+    for (size_t i = 0; i + 1 < map.size; i += 2)
+        pixels.push_back(map.data[i] + 256u * map.data[i + 1]);
+    gst_buffer_unmap(buffer, &map);
+    std::nth_element(pixels.begin(), pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 2),
+                     pixels.end());
+    return pixels[pixels.size() / 2];
+}
+
+} // namespace
+
+TEST(DffDepthOutputs, uncertainty_is_in_the_unit_of_depth_and_grows_with_noise)
+{
+    double last = 0.0;
+    for (const char *noise : {"none", "strong"}) {
+        double planes[2] = {};
+        for (const char *unit : {"index", "millimetre"}) {
+            TestPipeline pipeline(
+                "lenssweeptestsrc num-buffers=6 scene=slant near=3 far=1 noise=" + std::string(noise) +
+                " ! video/x-raw,width=128,height=96 ! focalstackmux ! dffdepth name=d unit=" + unit +
+                " ! queue ! appsink name=depth sync=false "
+                "d.uncertainty ! queue ! appsink name=uncertainty sync=false");
+            pipeline.play();
+            GstDepthInfo facts;
+            const double deviation = median_of(pipeline, "uncertainty", &facts) * facts.scale;
+            EXPECT_EQ(facts.offset, 0.0);
+            /* In the middle of the slant, at 2 dioptres, a plane of 0.4 is 100 mm. */
+            planes[g_str_equal(unit, "index") ? 0 : 1] =
+                g_str_equal(unit, "index") ? deviation : deviation / 100.0;
+        }
+        EXPECT_GT(planes[0], last);
+        EXPECT_LT(planes[0], 1.0);
+        EXPECT_NEAR(planes[1], planes[0], 0.3 * planes[0] + 0.02);
+        last = planes[0];
+    }
+}
+
+TEST(DffDepthOutputs, a_method_that_tells_no_uncertainty_says_so_and_gives_zeros)
+{
+    TestPipeline pipeline(
+        "lenssweeptestsrc num-buffers=6 ! video/x-raw,width=128,height=96 ! focalstackmux ! "
+        "dffdepth name=d method=paper ! queue ! appsink name=depth sync=false "
+        "d.uncertainty ! queue ! appsink name=uncertainty sync=false");
+    pipeline.play();
+    GstDepthInfo facts;
+    EXPECT_EQ(median_of(pipeline, "uncertainty", &facts), 0u);
+    EXPECT_GT(median_of(pipeline, "depth", &facts), 0u);
 }
 
 TEST(DffDepthOutputs, a_request_pad_that_is_not_linked_does_no_harm)

@@ -8,6 +8,7 @@
 #include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
 #include "engine/sub_plane.h"
+#include "engine/uncertainty.h"
 #include "twin_volume.h"
 
 #include <cmath>
@@ -56,7 +57,7 @@ protected:
           focus_stage(queue, shape, low), pyramid(queue, low), blur_stage(queue, pyramid),
           floor_stage(queue, low), cost_stage(queue, low), guide_stage(queue, low), filter_stage(queue, low),
           matching(queue, low), doubt_stage(queue, low), sub_plane_stage(queue, low), fill_stage(queue, low),
-          upsampling(queue, shape, low),
+          upsampling(queue, shape, low), uncertainty_stage(queue, shape, low),
           depth_map(queue.allocate(size_t{shape.width} * shape.height * sizeof(uint16_t)))
     {
         buffer.assign(stack.view());
@@ -158,6 +159,7 @@ protected:
     void expect_doubt();
     void expect_fill_and_upsampling();
     void expect_confidence_and_sparse_depth();
+    void expect_uncertainty(const Volume &decided);
 
     StackShape shape;
     TestStack stack;
@@ -179,6 +181,7 @@ protected:
     SubPlane sub_plane_stage;
     DepthFill fill_stage;
     JointUpsampling upsampling;
+    Uncertainty uncertainty_stage;
     cl::Buffer depth_map;
     twin::Noise noise;
 };
@@ -421,6 +424,7 @@ void VolumeStages::expect_fill_and_upsampling()
     const twin::Colours guide = read_guide();
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
     const float blur_step = GetParam().silent ? far_planes : close_planes;
+    uncertainty_stage.remember(matching.u());
     fill_stage.run(matching, noise.t, blur_step);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
     const Volume filled = read(matching.u(), 1);
@@ -428,6 +432,7 @@ void VolumeStages::expect_fill_and_upsampling()
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
     upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);
+    expect_uncertainty(u);
     if (shape.format == PixelFormat::I420 || shape.format == PixelFormat::Nv12)
         return; /* its pixels' colours are what the small planes' are: tried above */
     twin::Colours planes{Volume(shape.width, shape.height, shape.planes),
@@ -448,6 +453,39 @@ void VolumeStages::expect_fill_and_upsampling()
     for (size_t i = 0; i < depth.size(); i++)
         other += std::abs(encoder.decode(depth[i]).value_or(-1.0) - expected.values[i]) > 0.02f;
     EXPECT_LE(other, depth.size() / 200);
+}
+
+/* After the depth map. */
+void VolumeStages::expect_uncertainty(const Volume &decided)
+{
+    coder.set_encoder(DepthEncoder::index(shape.planes));
+    uncertainty_stage.run(matching.u(), fill_stage, filter_stage.filtered(), noise_stage, coder, depth_map);
+    const Volume found = read(uncertainty_stage.deviation(), 1);
+    const Volume evidence = read_cells<float>(fill_stage.solved(), 1.0f, 1, 1);
+    const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
+    const Volume expected =
+        twin::deviation(read(matching.u(), 1), decided, evidence, high,
+                        read_shorts(filter_stage.filtered(), shape.planes, 1024), noise.t);
+    for (size_t i = 0; i < expected.values.size(); i++)
+        ASSERT_NEAR(found.values[i], expected.values[i], 0.03f * expected.values[i] + 1e-3f) << i;
+
+    const size_t pixels = size_t{shape.width} * shape.height;
+    const auto map = read_back<uint16_t>(queue, uncertainty_stage.map(), pixels);
+    const auto depth = read_back<uint16_t>(queue, depth_map, pixels);
+    const float a_plane = 65534.0f / static_cast<float>(shape.planes - 1);
+    Volume shares_of_all = found; /* brought up as confidence is, in bytes */
+    for (float &value : shares_of_all.values)
+        value = value / static_cast<float>(shape.planes - 1);
+    const auto shares = twin::upsample_confidence(shares_of_all, shape.width, shape.height, low.scale);
+    for (size_t i = 0; i < pixels; i++) {
+        EXPECT_EQ(map[i] == 0, depth[i] == 0);
+        if (depth[i] != 0) {
+            ASSERT_NEAR(static_cast<float>(map[i]) / a_plane,
+                        static_cast<float>(shares[i]) / 255.0f * static_cast<float>(shape.planes - 1),
+                        0.005f * static_cast<float>(shape.planes))
+                << i;
+        }
+    }
 }
 
 void VolumeStages::expect_confidence_and_sparse_depth()

@@ -265,6 +265,38 @@ Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, flo
     return result;
 }
 
+Volume deviation(const Volume &u, const Volume &decided, const Volume &evidence, float high_confidence,
+                 const Volume &cost, float t)
+{
+    Volume result = u;
+    const auto last = static_cast<float>(cost.planes - 1);
+    const Volume mean = mean_over_planes(cost);
+    for (int y = 0; y < static_cast<int>(u.height); y++)
+        for (int x = 0; x < static_cast<int>(u.width); x++) {
+            float least = u.at(x, y), most = least;
+            for (int j = -1; j <= 1; j++)
+                for (int i = -1; i <= 1; i++) {
+                    least = std::min(least, u.at(reflect(x + i, u.width), reflect(y + j, u.height)));
+                    most = std::max(most, u.at(reflect(x + i, u.width), reflect(y + j, u.height)));
+                }
+            int best = 0;
+            for (int z = 1; z < static_cast<int>(cost.planes); z++)
+                if (cost.at(x, y, z) < cost.at(x, y, best))
+                    best = z;
+            float margin = 2.0f;
+            for (int z = 0; z < static_cast<int>(cost.planes); z++)
+                if (std::abs(z - best) > 1)
+                    margin = std::min(margin, cost.at(x, y, z) - cost.at(x, y, best));
+            const float share = evidence.at(x, y) / (high_confidence * high_confidence);
+            const float power = -0.54f + 0.456f * t + 0.439f * std::log(most - least + 0.05f) +
+                                0.335f * std::log(std::abs(u.at(x, y) - decided.at(x, y)) + 0.03f) -
+                                0.351f * std::log(margin / (mean.at(x, y) + 0.02f) + 0.01f) +
+                                0.927f * std::max(1.0f - 10.0f * share, 0.0f);
+            result.at(x, y) = std::min(std::exp(power), last);
+        }
+    return result;
+}
+
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale)
 {
     const Volume nearer = nearest_3x3(u);

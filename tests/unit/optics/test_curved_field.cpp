@@ -65,6 +65,21 @@ TEST(CurvedField, millimetres_are_those_of_the_bent_vergence)
             }
 }
 
+/* A deviation is the difference that so much of depth makes. */
+TEST(CurvedField, deviations_are_bent_as_depth_is)
+{
+    for (const DepthUnit unit : {DepthUnit::Dioptre, DepthUnit::Millimetre}) {
+        const CurvedField curve(focus, width, height, unit);
+        const std::vector<uint16_t> depth = bent(curve, 2.0), farther = bent(curve, 2.0 - 0.005 * 2.5);
+        std::vector<uint16_t> deviations(depth.size(), static_cast<uint16_t>(std::lround(0.005 * 65534)));
+        deviations[7] = 0;
+        curve.apply_to_deviations(reinterpret_cast<std::byte *>(deviations.data()), 2 * size_t{width},
+                                  reinterpret_cast<const std::byte *>(depth.data()), 2 * size_t{width});
+        for (size_t i = 0; i < depth.size(); i++)
+            EXPECT_NEAR(deviations[i], farther[i] - depth[i], unit == DepthUnit::Dioptre ? 2 : 1.2) << i;
+    }
+}
+
 TEST(CurvedField, what_lies_beyond_infinity_is_as_far_as_millimetres_go)
 {
     const FocusCalibration to_infinity{{2.0, 0.1}, {0.0, 0.0, -0.5}};

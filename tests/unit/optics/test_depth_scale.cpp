@@ -48,6 +48,15 @@ INSTANTIATE_TEST_SUITE_P(DepthEncoder, EveryUnit,
                                          DepthEncoder::millimetre(uneven_plan()),
                                          DepthEncoder::micrometre({0.0, 3.0, 4.0, 9.5})));
 
+TEST_P(EveryUnit, slope_is_what_a_plane_makes)
+{
+    const DepthEncoder &encoder = GetParam();
+    for (double z = 0.3; z < encoder.planes() - 1.5; z += 0.4) {
+        const double pixels = (encoder.encode(z + 0.25) - encoder.encode(z - 0.25)) / 0.5;
+        EXPECT_NEAR(encoder.slope(z), pixels, 0.05 * pixels + 3.0) << z;
+    }
+}
+
 TEST(DepthEncoder, ends_of_the_scale)
 {
     const DepthEncoder index = DepthEncoder::index(10);

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later
+ * Copyright (C) 2026 the gst-plugins-dff authors */
+#pragma once
+
+#include "engine/depth_coder.h"
+#include "engine/depth_fill.h"
+
+namespace dff {
+
+/* How far the depth may be off, one standard deviation: see kernels/uncertainty.cl. */
+class Uncertainty {
+public:
+    Uncertainty(CommandQueue &queue, const StackShape &shape, const LowShape &low);
+
+    /* Before the fill changes the low picture `u`. */
+    void remember(const cl::Buffer &u);
+
+    /* `filtered`: costs, low pictures short [z]; `depth`: the map of the final `u`. */
+    void run(const cl::Buffer &u, const DepthFill &fill, const cl::Buffer &filtered,
+             const NoiseEstimate &noise, DepthCoder &coder, const cl::Buffer &depth);
+
+    const cl::Buffer &deviation() const { return deviation_; } /* low picture, planes */
+    const cl::Buffer &map() const
+    {
+        return map_;
+    } /* ushort[height][width], steps of the depth map; 0 where that is */
+
+private:
+    CommandQueue &queue_;
+    StackShape shape_;
+    LowShape low_;
+    cl::Kernel low_deviation_, upsample_deviation_;
+    cl::Buffer decided_, deviation_, map_;
+};
+
+} // namespace dff
