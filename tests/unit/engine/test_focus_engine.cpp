@@ -16,8 +16,11 @@ namespace {
 struct Maps {
     explicit Maps(const StackShape &shape)
         : depth(shape.width * shape.height), sparse(depth.size()), confidence(depth.size()),
-          motion(depth.size()), outputs{picture(depth, shape), picture(sparse, shape),
-                                        picture(confidence, shape), picture(motion, shape)}
+          motion(depth.size()), outputs{picture(depth, shape),
+                                        picture(sparse, shape),
+                                        picture(confidence, shape),
+                                        picture(motion, shape),
+                                        {}}
     {
     }
 
