@@ -299,6 +299,8 @@ bool Walk::finishes()
     if (failed_ || sinks_.empty() || feeds_.empty() != is_source())
         return true;
     begin_anew();
+    if (failed_) /* it did not start again, and on the way to NULL the bus lost the error */
+        return true;
     for (const auto &feed : feeds_) {
         say("last round: " + feed->new_caps(shape_, true));
         say("last round: " + feed->push(6, true));
