@@ -31,8 +31,8 @@
  *
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=60 ! focalstackmux ! dffdepth ! videoconvert ! fakesink
- * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=3 far=0.5 ! focalstackmux ! dffdepth name=d
- * unit=millimetre \
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=3 far=0.5 ! focalstackmux ! \
+ *     dffdepth name=d unit=millimetre \
  *     d.src ! queue ! videoconvert ! pngenc ! filesink location=millimetres.png \
  *     d.uncertainty ! queue ! videoconvert ! pngenc ! filesink location=give-or-take.png
  * ]|

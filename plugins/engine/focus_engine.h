@@ -18,12 +18,11 @@ struct OutputPicture {
 
 /* Which maps to compute, and where they go. */
 struct DepthOutputs {
-    OutputPicture depth;      /* 16 bits */
-    OutputPicture sparse;     /* 16 bits, 0 where unknown */
-    OutputPicture confidence; /* 8 bits: 255 c */
-    OutputPicture motion;     /* 8 bits: 255 where it moved during the sweep */
-    OutputPicture
-        uncertainty; /* 16 bits: one standard deviation in steps of the depth map, 0 where that is */
+    OutputPicture depth;       /* 16 bits */
+    OutputPicture sparse;      /* 16 bits, 0 where unknown */
+    OutputPicture confidence;  /* 8 bits: 255 c */
+    OutputPicture motion;      /* 8 bits: 255 where it moved during the sweep */
+    OutputPicture uncertainty; /* 16 bits: one standard deviation, steps of depth; 0 where that is 0 */
 };
 
 /* Depth from focal stacks of one shape. Not to be used from two threads at once. */

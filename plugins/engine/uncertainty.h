@@ -20,10 +20,8 @@ public:
              const NoiseEstimate &noise, DepthCoder &coder, const cl::Buffer &depth);
 
     const cl::Buffer &deviation() const { return deviation_; } /* low picture, planes */
-    const cl::Buffer &map() const
-    {
-        return map_;
-    } /* ushort[height][width], steps of the depth map; 0 where that is */
+    /* ushort[height][width], steps of the depth map; 0 where that is 0. */
+    const cl::Buffer &map() const { return map_; }
 
 private:
     CommandQueue &queue_;

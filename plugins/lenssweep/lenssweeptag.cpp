@@ -39,8 +39,8 @@
  *
  * ## Example launch line
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=60 ! lenssweeptag planes=10 near=4 far=0.5 ! fakesink silent=false
- * -v
+ * gst-launch-1.0 -v videotestsrc num-buffers=60 ! lenssweeptag planes=10 near=4 far=0.5 ! \
+ *     fakesink silent=false
  * ]|
  */
 #include "lenssweeptag.h"
