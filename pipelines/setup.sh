@@ -16,7 +16,7 @@ build_packages=(
 test_packages=(
     libgtest-dev libasan8 libubsan1 clang-format clang-tidy clang libclang-rt-dev
     python3-gi gir1.2-gstreamer-1.0 gir1.2-gst-plugins-base-1.0 python3-numpy python3-venv
-    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg python3-distributed chromium chromium-driver python3-selenium)
+    iproute2 util-linux gir1.2-aravis-0.8 openssl ffmpeg python3-distributed)
 
 # For the virtual machine of tests/rig/vm, which is one of this kind.
 [ "$(dpkg --print-architecture 2>/dev/null)" != amd64 ] || test_packages+=(
