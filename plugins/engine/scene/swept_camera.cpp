@@ -130,8 +130,8 @@ template <typename Work> void SweptCamera::for_each_pixel(double time, const Wor
 {
     std::vector<std::pair<const MovingThing *, MovingPose>> things; /* near to far */
     if (overlay_)
-        for (auto thing = overlay_->things().rbegin(); thing != overlay_->things().rend(); ++thing)
-            things.emplace_back(&*thing, thing->pose(time));
+        for (const MovingThing &thing : overlay_->things()) /* far to near */
+            things.insert(things.begin(), {&thing, thing.pose(time)});
     const cv::Point2d offset = camera_motion_.offset(time);
     for (int y = 0; y < size().height; y++) {
         const WorldPixel row = world_pixel(y + offset.y, size().height);
