@@ -72,6 +72,7 @@ void BoardCollector::keep()
         if (known)
             return tell_("the board is where it was: move it");
         views_.push_back(std::move(view));
+        pixels_.add(sweeps.front());
         tell_(what_is_seen(views_.back(), views_.size()));
     } catch (const NoBoard &fault) {
         tell_(fault.what());

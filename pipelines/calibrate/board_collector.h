@@ -3,6 +3,7 @@
 #pragma once
 
 #include "board_view.h"
+#include "pixel_watch.h"
 
 #include <functional>
 
@@ -21,6 +22,7 @@ public:
     void end_source();
 
     const std::vector<BoardView> &views() const { return views_; }
+    std::vector<cv::Point> bad_pixels() const { return pixels_.bad_pixels(); }
 
 private:
     void keep();
@@ -31,6 +33,7 @@ private:
     std::vector<Sweep> resting_; /* of one pose */
     std::optional<BoardView> pose_;
     std::string last_fault_;
+    PixelWatch pixels_;
 };
 
 } // namespace dff

@@ -126,6 +126,17 @@ std::vector<cv::Point2f> positions_of(const std::vector<SeenCorner> &corners,
     return positions;
 }
 
+std::vector<std::vector<cv::Point2d>> places_of(const std::vector<std::vector<SeenCorner>> &planes)
+{
+    std::vector<std::vector<cv::Point2d>> places;
+    for (const auto &plane : planes) {
+        places.emplace_back();
+        for (const SeenCorner &corner : plane)
+            places.back().push_back(corner.energy > 0.0 ? corner.at : cv::Point2d(NAN, NAN));
+    }
+    return places;
+}
+
 /* Where each corner is sharpest, by what it says alone; most must be so within the sweep. */
 void require_sharpness(BoardView &view)
 {
@@ -204,6 +215,7 @@ BoardView measure_board(const Board &board, const std::vector<Sweep> &sweeps)
         view.corners.push_back(corner.at);
     }
     require_sharpness(view);
+    view.squares = measure_squares(board, sweeps, places_of(view.planes));
     return view;
 }
 

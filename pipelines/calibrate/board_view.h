@@ -3,6 +3,7 @@
 #pragma once
 
 #include "board.h"
+#include "board_light.h"
 #include "sweep_reader.h"
 
 #include <stdexcept>
@@ -31,6 +32,7 @@ struct BoardView {
     std::vector<double> focus;  /* the plane position in which each corner is sharpest; NAN */
     std::vector<double> powers; /* what the source says of the planes */
     int window = 0;             /* half the side of what was looked at around a corner */
+    std::vector<SquareLight> squares{};
 
     cv::Point2d middle() const;
     /* Root mean square of the distances between the corners of two views, pixels. */

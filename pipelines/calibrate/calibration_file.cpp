@@ -50,6 +50,38 @@ void write_focus(cv::FileStorage &file, const RigCalibration &calibration)
          << "blur_step" << calibration.blur_step << "aperture_mm" << calibration.aperture_mm << "}";
 }
 
+void write_light(cv::FileStorage &file, const RigCalibration &calibration)
+{
+    if (!calibration.light.planes.empty()) {
+        std::vector<double> gains, vignettings, deviations;
+        for (const PlaneLight &plane : calibration.light.planes) {
+            gains.push_back(plane.gain);
+            vignettings.push_back(plane.vignetting);
+            deviations.push_back(plane.deviation);
+        }
+        file.writeComment("a plane each shows light times gain (1 - vignetting r^2), r in half diagonals");
+        file << "light"
+             << "{"
+             << "gain" << gains << "vignetting" << vignettings << "deviations" << deviations << "residual"
+             << calibration.light.residual << "}";
+    }
+    if (calibration.noise.is_known) {
+        file.writeComment("variance at the brightness I, DN^2: slope I + offset");
+        file << "noise"
+             << "{"
+             << "slope" << calibration.noise.slope << "offset" << calibration.noise.offset << "}";
+    }
+    std::vector<int> numbers;
+    for (const cv::Point &pixel : calibration.bad_pixels) {
+        numbers.push_back(pixel.x);
+        numbers.push_back(pixel.y);
+    }
+    if (!numbers.empty()) {
+        file.writeComment("column and row of each");
+        file << "bad_pixels" << numbers;
+    }
+}
+
 void write_residuals(cv::FileStorage &file, const RigCalibration &calibration, const Board &board)
 {
     file << "made_from"
@@ -85,6 +117,7 @@ void write_calibration(const std::string &path, const RigCalibration &calibratio
     write_camera(storage, calibration.camera);
     write_planes(storage, calibration.warps.planes);
     write_focus(storage, calibration);
+    write_light(storage, calibration);
     write_residuals(storage, calibration, board);
     const std::string text = storage.releaseAndGetString(), part = path + ".part";
     std::ofstream file(part, std::ios::binary);

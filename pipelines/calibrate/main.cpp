@@ -2,9 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "board_collector.h"
 #include "calibration_file.h"
+#include "calibration_plots.h"
 #include "lens_points.h"
 #include "options.h"
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -33,7 +35,7 @@ void write_points(const dff::Options &options)
               << points.points().back().metres << " m. " << points.worth() << '\n';
 }
 
-std::vector<dff::BoardView> look_for_boards(const dff::Options &options)
+dff::BoardCollector look_for_boards(const dff::Options &options)
 {
     dff::BoardCollector collector(options.board,
                                   [](const std::string &line) { std::cout << line << std::endl; });
@@ -49,7 +51,24 @@ std::vector<dff::BoardView> look_for_boards(const dff::Options &options)
     }
     if (collector.views().empty())
         throw dff::Refusal("No board was measured, for the reasons above");
-    return collector.views();
+    return collector;
+}
+
+void report_light(const dff::RigCalibration &found)
+{
+    for (std::size_t z = 0; z < found.light.planes.size(); z++)
+        std::printf("light %-2zu         %.4f times as bright; corners lose %.1f %%, within %.1f %%\n", z,
+                    found.light.planes[z].gain, 100 * found.light.planes[z].vignetting,
+                    100 * found.light.planes[z].deviation);
+    if (!found.light.planes.empty())
+        std::printf("left over        %.2f %% of light\n", 100 * found.light.residual);
+    if (found.noise.is_known)
+        std::printf("noise            variance %.3f I + %.2f of 8-bit values; %.1f at mid-gray\n",
+                    found.noise.slope, found.noise.offset,
+                    std::sqrt(128 * found.noise.slope + found.noise.offset));
+    if (!found.bad_pixels.empty())
+        std::printf("bad pixels       %zu, first at column %d, row %d\n", found.bad_pixels.size(),
+                    found.bad_pixels.front().x, found.bad_pixels.front().y);
 }
 
 void report(const dff::RigCalibration &found)
@@ -71,6 +90,7 @@ void report(const dff::RigCalibration &found)
                 -found.focus.field[2] / found.focus.step(), found.focus.field_deviation / found.focus.step());
     std::printf("blur             %.2f px a plane: an aperture of %.2f mm\n", found.blur_step,
                 found.aperture_mm);
+    report_light(found);
     for (const std::string &weakness : found.weak)
         std::printf("weak: %s\n", weakness.c_str());
 }
@@ -78,7 +98,7 @@ void report(const dff::RigCalibration &found)
 int run_check(const dff::Options &options)
 {
     const dff::RigCalibration known = dff::read_calibration(options.check);
-    const dff::CalibrationCheck found = dff::check(known, options.board, look_for_boards(options));
+    const dff::CalibrationCheck found = dff::check(known, options.board, look_for_boards(options).views());
     std::printf("corners are off by %.3f px, planes by up to %.3f px, focus by %.3f planes\n",
                 found.reprojection_px, found.shift_px, found.vergence_planes);
     for (const std::string &fault : found.faults)
@@ -98,10 +118,14 @@ int run(const dff::Options &options)
         return 0;
     if (!options.check.empty())
         return run_check(options);
-    const dff::RigCalibration found = dff::calibrate(options.board, look_for_boards(options));
+    const dff::BoardCollector seen = look_for_boards(options);
+    dff::RigCalibration found = dff::calibrate(options.board, seen.views());
+    found.bad_pixels = seen.bad_pixels();
     report(found);
     dff::write_calibration(options.output, found, options.board);
     std::printf("%s is for every calibration property.\n", options.output.c_str());
+    if (!options.plots.empty())
+        dff::write_plots(options.plots, found);
     return 0;
 }
 

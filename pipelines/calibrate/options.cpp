@@ -11,13 +11,13 @@ namespace {
 
 struct Values {
     gchar *board = nullptr, *sheet = nullptr, *output = nullptr, *check = nullptr, *points = nullptr,
-          *lens = nullptr;
+          *lens = nullptr, *plots = nullptr;
     gchar **recordings = nullptr, **sources = nullptr;
     gint boards = 0;
 
     ~Values()
     {
-        for (gchar *text : {board, sheet, output, check, points, lens})
+        for (gchar *text : {board, sheet, output, check, points, lens, plots})
             g_free(text);
         g_strfreev(recordings);
         g_strfreev(sources);
@@ -60,12 +60,16 @@ void take(const Values &values, Options &options)
     options.check = values.check ? values.check : options.check;
     options.points = values.points ? values.points : options.points;
     options.lens = values.lens ? values.lens : options.lens;
+    options.plots = values.plots ? values.plots : options.plots;
     if (values.boards < 0 || values.boards > 1000)
         throw std::invalid_argument("--boards is 1 to 1000");
     options.boards = values.boards ? static_cast<unsigned>(values.boards) : options.boards;
     if (options.sources.empty() && options.sheet.empty() && options.points.empty())
         throw std::invalid_argument(
             "Nothing to look at: give --source or --recording, --points or --sheet; --help tells more");
+    if (!options.plots.empty() && (options.sources.empty() || !options.check.empty()))
+        throw std::invalid_argument(
+            "--plots draws what is found: give --source or --recording with it, and not --check");
 }
 
 } // namespace
@@ -86,6 +90,8 @@ Options parse_options(int argc, char **argv)
          "FILE"},
         {"check", 0, 0, G_OPTION_ARG_FILENAME, &values.check,
          "Write nothing: measure whether this file still fits", "FILE"},
+        {"plots", 0, 0, G_OPTION_ARG_FILENAME, &values.plots,
+         "Draw what was found and what is left over, as SVG", "FILE"},
         {"points", 0, 0, G_OPTION_ARG_STRING, &values.points,
          "Look at nothing: write a lens profile of distances that a tape measured, as "
          "120=2.0,200=0.9,310=0.5",

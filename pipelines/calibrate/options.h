@@ -17,6 +17,7 @@ struct Options {
     std::string lens = "lens";
     std::string output = "calibration.yml";
     std::string check;
+    std::string plots;
     unsigned boards = 12; /* after which no more are looked for */
 };
 

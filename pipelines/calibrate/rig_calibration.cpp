@@ -241,6 +241,31 @@ void compare_powers(const std::vector<BoardView> &views, RigCalibration &result)
                               ": measure the squares (--board) once more before you trust the boards.");
 }
 
+void find_light(const Board &board, const std::vector<BoardView> &views, RigCalibration &result)
+{
+    std::vector<BoardSquares> squares;
+    for (const BoardView &view : views)
+        squares.push_back({view.squares, view.focus});
+    result.light =
+        fit_light(board, squares, views.front().picture, views.front().planes.size(), result.blur_step);
+    result.noise = fit_noise(squares, result.blur_step);
+    constexpr double unsure = 0.02;
+    if (result.light.is_clipped)
+        result.weak.push_back(
+            "White squares are as bright as a picture can be: expose less, or gain and vignetting "
+            "cannot be told.");
+    else if (result.light.planes.empty())
+        result.weak.push_back(
+            "Gain and vignetting of the planes are not known: each plane must see white squares that are "
+            "20 pixels and more and nearly sharp.");
+    double deviation = 0.0;
+    for (const PlaneLight &plane : result.light.planes)
+        deviation = std::max(deviation, plane.deviation);
+    if (deviation > unsure)
+        result.weak.push_back("Vignetting is known within " + number(100 * deviation, 0) +
+                              " % in some planes: show the board in the corners, evenly lit.");
+}
+
 std::vector<cv::Matx34d> poses_by(const RigCalibration &calibration, const Board &board,
                                   const PlaneWarps &warps, double &error_px)
 {
@@ -286,8 +311,10 @@ RigCalibration calibrate(const Board &board, std::vector<BoardView> views)
     require_tilt(poses);
     const std::vector<FocusPoint> points = focus_points(board, views, result, result.warps, poses);
     result.focus = fit_surface(points, static_cast<unsigned>(views.front().planes.size()), views.size());
+    result.points = points;
     require_sense(result);
     result.aperture_mm = 1e3 * result.blur_step / (result.camera.fx * result.focus.step());
+    find_light(board, views, result);
     find_weakness(result, points);
     compare_powers(views, result);
     return result;

@@ -24,8 +24,12 @@ struct RigCalibration {
     FocusSurface focus;
     double blur_step = 0.0;   /* pixels a plane */
     double aperture_mm = 0.0; /* that such a blur means */
+    RigLight light;
+    RigNoise noise;
+    std::vector<cv::Point> bad_pixels;
     std::size_t boards = 0;
-    std::vector<std::string> weak; /* what is weakly determined, and what would help, in words */
+    std::vector<FocusPoint> points; /* corners, where each was sharp */
+    std::vector<std::string> weak;  /* what is weakly determined, and what would help, in words */
 };
 
 /* Throws Refusal. */

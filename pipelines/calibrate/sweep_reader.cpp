@@ -32,8 +32,10 @@ cv::Mat1b copy_of(GstSample *sample)
 SweepReader::SweepReader(const std::string &source)
 {
     g_autoptr(GError) error = nullptr;
+    /* By RGB, since videoconvert copies Y, of 16 to 235, to gray that it says to be of 0 to 255. */
     const std::string description =
-        source + " ! videoconvert ! video/x-raw,format=GRAY8 ! appsink name=planes sync=false max-buffers=64";
+        source + " ! videoconvert ! video/x-raw,format=(string){GRAY8,RGB} ! videoconvert ! "
+                 "video/x-raw,format=GRAY8 ! appsink name=planes sync=false max-buffers=64";
     GstElement *pipeline = gst_parse_launch(description.c_str(), &error);
     if (pipeline)
         pipeline_.reset(GST_ELEMENT(gst_object_ref_sink(pipeline)));

@@ -152,6 +152,7 @@ dff::SweptCamera TestScene::camera(const dff::SweepPlan &plan, cv::Size size, co
                                             .shake = shake,
                                             .breathing = breathing,
                                             .field_curvature = field_curvature,
+                                            .vignetting = vignetting,
                                             .jitter = jitter,
                                             .seed = seed};
     dff::Scene seen = make(plan, size, stop);

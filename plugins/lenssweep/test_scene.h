@@ -44,6 +44,7 @@ struct TestScene {
     gdouble shake = 0.0;
     gdouble breathing = 0.0;
     gdouble field_curvature = 0.0;
+    gdouble vignetting = 0.0;
     gdouble jitter = 0.0;
     gdouble flicker = 0.0;
     guint light_switch = 0;

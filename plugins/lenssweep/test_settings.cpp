@@ -32,6 +32,7 @@ enum {
     PROP_PAN,
     PROP_SHAKE,
     PROP_CUT,
+    PROP_VIGNETTING,
 };
 
 void set_string(std::string &target, const GValue *value)
@@ -64,6 +65,9 @@ bool set_scene_property(TestScene &scene, guint id, const GValue *value)
         return true;
     case PROP_FIELD_CURVATURE:
         scene.field_curvature = g_value_get_double(value);
+        return true;
+    case PROP_VIGNETTING:
+        scene.vignetting = g_value_get_double(value);
         return true;
     case PROP_BLUR_STEP:
         scene.blur_step = g_value_get_double(value);
@@ -132,6 +136,9 @@ bool get_scene_property(const TestScene &scene, guint id, GValue *value)
         return true;
     case PROP_FIELD_CURVATURE:
         g_value_set_double(value, scene.field_curvature);
+        return true;
+    case PROP_VIGNETTING:
+        g_value_set_double(value, scene.vignetting);
         return true;
     case PROP_BLUR_STEP:
         g_value_set_double(value, scene.blur_step);
@@ -285,6 +292,12 @@ static void install_board_properties(GObjectClass *klass, const TestScene &defau
             "Planes that what is sharp in the picture's corners lies farther away than what is sharp in its "
             "centre; grows with the square of the distance from the centre",
             -10.0, 10.0, defaults.field_curvature, playing)));
+    install(PROP_VIGNETTING,
+            dff::checked_at_start(g_param_spec_double("vignetting", "Vignetting",
+                                                      "Share of the light that the picture's corners lose, "
+                                                      "in every plane; grows with the square of the "
+                                                      "distance from the centre",
+                                                      0.0, 1.0, defaults.vignetting, playing)));
 }
 
 void install_test_properties(GObjectClass *klass)

@@ -37,6 +37,20 @@ Scene bent(const Scene &scene, double planes, double last_plane)
     return result;
 }
 
+/* What a lens lets through of a part of a picture of `whole` size that begins at `corner`. */
+void darken(cv::Mat3f &part, cv::Point corner, cv::Size whole, double vignetting)
+{
+    if (vignetting == 0.0)
+        return;
+    const cv::Point2d center((whole.width - 1) / 2.0, (whole.height - 1) / 2.0);
+    const double far = std::max(center.ddot(center), 1.0);
+    for (int y = 0; y < part.rows; y++)
+        for (int x = 0; x < part.cols; x++) {
+            const cv::Point2d at = cv::Point2d(corner.x + x, corner.y + y) - center;
+            part(y, x) *= static_cast<float>(1.0 - vignetting * at.ddot(at) / far);
+        }
+}
+
 } // namespace
 
 SweptCamera::SweptCamera(Scene scene, SweptCameraSettings settings, const std::stop_token &stop)
@@ -97,13 +111,20 @@ PlaneView SweptCamera::view_at(unsigned plane, double time) const
 cv::Mat3f SweptCamera::expose(unsigned plane, const std::stop_token &stop) const
 {
     const PlaneView seen = view(plane);
-    const cv::Mat3f picture = renderer_.render(seen.focus, stop);
-    return camera_motion_.is_still() ? warp_picture(picture, seen) : picture;
+    cv::Mat3f picture = renderer_.render(seen.focus, stop);
+    if (!camera_motion_.is_still())
+        return picture; /* seen() warps it */
+    picture = warp_picture(picture, seen);
+    darken(picture, {}, size(), settings_.vignetting);
+    return picture;
 }
 
 PicturePatch SweptCamera::expose_motion(uint64_t sweep, unsigned plane) const
 {
-    return overlay_->patch(plane, exposure_time(sweep, plane));
+    PicturePatch patch = overlay_->patch(plane, exposure_time(sweep, plane));
+    if (camera_motion_.is_still())
+        darken(patch.values, patch.where.tl(), size(), settings_.vignetting);
+    return patch;
 }
 
 cv::Mat3f SweptCamera::seen(const cv::Mat3f &exposed, uint64_t sweep, unsigned plane) const
@@ -114,8 +135,11 @@ cv::Mat3f SweptCamera::seen(const cv::Mat3f &exposed, uint64_t sweep, unsigned p
         const PicturePatch patch = expose_motion(sweep, plane);
         patch.values.copyTo(picture(patch.where));
     }
-    return camera_motion_.is_still() ? picture
-                                     : warp_picture(picture, view_at(plane, exposure_time(sweep, plane)));
+    if (camera_motion_.is_still())
+        return picture;
+    picture = warp_picture(picture, view_at(plane, exposure_time(sweep, plane)));
+    darken(picture, {}, size(), settings_.vignetting);
+    return picture;
 }
 
 cv::Mat3b SweptCamera::digitise(const cv::Mat3f &exposed, unsigned plane, uint64_t realisation) const

@@ -31,6 +31,8 @@ struct SweptCameraSettings {
                                      has it */
     double field_curvature = 0.0; /* planes that what is sharp in the picture's corners lies farther away
                                      than what is sharp in its centre; grows with the square */
+    double vignetting = 0.0;      /* share of the light that the picture's corners lose in each plane;
+                                     grows with the square of the distance from the centre */
     double jitter = 0.0;          /* root mean square of each plane's shift along x and y, pixels */
     uint64_t seed = 0;
 };

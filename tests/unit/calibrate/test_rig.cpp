@@ -20,6 +20,7 @@ const Board board{10, 7, 20.0};
 struct Seen {
     std::vector<BoardView> views;
     std::string told;
+    std::vector<cv::Point> bad_pixels;
 };
 
 class Rig : public testing::Test {
@@ -36,8 +37,9 @@ protected:
     }
     static void TearDownTestSuite() { unlink(camera.c_str()); }
 
-    static Seen look(const std::vector<std::string> &poses, const Board &asked = board,
-                     const std::string &more = "breathing=0.03 field-curvature=0.5 noise=moderate")
+    static Seen
+    look(const std::vector<std::string> &poses, const Board &asked = board,
+         const std::string &more = "breathing=0.03 field-curvature=0.5 vignetting=0.05 noise=moderate")
     {
         Seen seen;
         BoardCollector collector(asked, [&](const std::string &line) { seen.told += line + "\n"; });
@@ -51,6 +53,7 @@ protected:
             collector.end_source();
         }
         seen.views = collector.views();
+        seen.bad_pixels = collector.bad_pixels();
         return seen;
     }
 
@@ -85,6 +88,20 @@ TEST_F(Rig, twelve_boards_tell_what_the_lens_is)
                                magnification * corner),
                       0.1);
     }
+
+    /* The camera draws a disk of 2 px by the share of each pixel, which is as wide as one of 2.54 px. */
+    EXPECT_NEAR(found.blur_step, 2.54, 0.15);
+    ASSERT_EQ(found.light.planes.size(), 6u);
+    for (const PlaneLight &plane : found.light.planes) {
+        EXPECT_NEAR(plane.gain, 1.0, 0.002);
+        EXPECT_NEAR(plane.vignetting, 0.05, 0.01);
+    }
+    ASSERT_TRUE(found.noise.is_known);
+    /* Three colours have noise of their own, which gray mixes; both are rounded. */
+    const double mixed = 0.299 * 0.299 + 0.587 * 0.587 + 0.114 * 0.114, rounding = 1.0 / 12.0;
+    EXPECT_NEAR(found.noise.slope, mixed * 0.2, 0.01);
+    EXPECT_NEAR(found.noise.offset, mixed * (4.0 + rounding) + rounding, 0.5);
+    EXPECT_TRUE(seen.bad_pixels.empty());
 
     const std::string file = testing::TempDir() + "found" + std::to_string(getpid()) + ".yml";
     write_calibration(file, found, board);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
@@ -196,6 +197,35 @@ TEST_F(Motion, the_patch_joins_the_still_picture_without_a_seam)
             cv::norm(patch.values.col(patch.where.width - 1), still.col(patch.where.width - 1), cv::NORM_INF),
             0.5);
         EXPECT_GT(cv::norm(patch.values, still, cv::NORM_INF), 20.0);
+    }
+}
+
+TEST_F(Motion, corners_lose_light_whatever_moves)
+{
+    /* Pixels that are not the gray wall by what the lens lets through: the ball's. */
+    const auto count_others = [&](const cv::Mat3f &picture) {
+        const cv::Point2d center(159.5, 119.5);
+        int count = 0;
+        for (int y = 0; y < picture.rows; y++)
+            for (int x = 0; x < picture.cols; x++) {
+                const double radius = cv::norm(cv::Point2d(x, y) - center) / cv::norm(center);
+                const double wall = 90.0 * (1.0 - settings_.vignetting * radius * radius);
+                count += std::abs(picture(y, x)[0] - wall) > 1.0 ? 1 : 0;
+            }
+        return count;
+    };
+    for (const double pan : {0.0, 1.5}) {
+        settings_.pan = pan;
+        settings_.vignetting = 0.0;
+        const SweptCamera even(scene_, settings_);
+        const int ball = count_others(even.seen(even.expose(2), 5, 2));
+        settings_.vignetting = 0.2;
+        const SweptCamera camera(scene_, settings_);
+        const cv::Mat3f picture = camera.seen(camera.expose(2), 5, 2);
+        EXPECT_NEAR(picture(0, 0)[0], 72.0, 0.1);
+        EXPECT_NEAR(picture(239, 319)[0], 72.0, 0.1);
+        EXPECT_GT(ball, 100);
+        EXPECT_NEAR(count_others(picture), ball, 0.05 * ball);
     }
 }
 
