@@ -204,7 +204,7 @@ SweepFollower::Fill SweepFollower::fill_of(size_t component, unsigned z, const O
 }
 
 /* Where there is an object, the moved picture; where one passes, the background; else the picture itself. */
-void SweepFollower::compose(cv::Mat picture, unsigned z, const ObjectMotion &motion,
+void SweepFollower::compose(const cv::Mat &picture, unsigned z, const ObjectMotion &motion,
                             const ObjectsOfComponent &objects, Fill &fill) const
 {
     cv::Mat moved;

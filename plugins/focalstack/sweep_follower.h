@@ -52,8 +52,8 @@ private:
     void hold_tiles();
     ObjectsOfComponent objects_of(size_t component, const ObjectMotion &motion) const;
     Fill fill_of(size_t component, unsigned z, const ObjectMotion &motion) const;
-    void compose(cv::Mat picture, unsigned z, const ObjectMotion &motion, const ObjectsOfComponent &objects,
-                 Fill &fill) const;
+    void compose(const cv::Mat &picture, unsigned z, const ObjectMotion &motion,
+                 const ObjectsOfComponent &objects, Fill &fill) const;
 
     StackShape shape_;
     SmallStack small_, last_; /* this sweep and the one before */

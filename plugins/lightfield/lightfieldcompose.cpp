@@ -140,7 +140,8 @@ void State::apply_settings()
 
 void State::open_device(std::shared_ptr<dff::Device> device)
 {
-    dff::LightFieldPlan(settings_, {1, 1}); /* tells of a calibration that cannot be read */
+    /* Tells of a calibration that cannot be read. */
+    [[maybe_unused]] const dff::LightFieldPlan plan(settings_, {1, 1});
     settings_changed_ = true;
     picture_.start(std::move(device));
 }

@@ -257,7 +257,7 @@ std::vector<double> FileEntries::numbers(const char *name, size_t least, size_t 
 bool FileEntries::is_empty_list(const char *name) const
 {
     const cv::FileNode node = find(name);
-    return node.empty() || (node.isSeq() && node.size() == 0);
+    return node.empty() || (node.isSeq() && node.begin() == node.end());
 }
 
 std::vector<FileEntries> FileEntries::list(const char *name, size_t most) const
