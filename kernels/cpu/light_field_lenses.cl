@@ -9,8 +9,8 @@
 #include "lanes16.cl"
 
 #define BINS 8 /* from the slope 0 to the greatest, in each direction */
-#define ODD_LANES (int16)(0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1)
 #define BIN_STEPS 32 /* slopes in the table for each of them */
+#define ODD_LANES (int16)(0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1, 0, -1)
 
 /* The relief's row from one side. */
 typedef struct {
@@ -40,7 +40,7 @@ inline void find_seen(const Side *side, __global const float *slopes, __global i
 /* The channel c of what 16 rays see at the places s, at its bits of a pixel. Steps in the table of slopes are below 0 for rays
  * that lean to the left and see the row `mirrored`, whose arrays lie as far behind the row's as one's do behind another's. */
 inline uint16 look_at(const Layers *layers, const Side *side, const Side *mirrored, __global const float *slopes, float16 s,
-                     float16 step, int c)
+                      float16 step, int c)
 {
     const Row *row = &side->row;
     const int pitch = PITCH(row->width);
@@ -83,8 +83,9 @@ inline uint16 look_at(const Layers *layers, const Side *side, const Side *mirror
 /* Arguments as those of lenticular; and slopes of BINS * BIN_STEPS + 1 turns from the middle to the edge of the cone, the
  * row's first column and width, and scratch_size elements of scratch for each work-item. Work-items (strips). */
 __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __global const float *slopes,
-                              __global const float *shifts, int4 flips, int base, int width, __global uint *scratch, int scratch_size, float2 first,
-                              float2 scale, __global uchar *output, ulong stride, int channels, int2 output_size)
+                              __global const float *shifts, int4 flips, int base, int width, __global uint *scratch,
+                              int scratch_size, float2 first, float2 scale, __global uchar *output, ulong stride, int channels,
+                              int2 output_size)
 {
     const Layers layers = MAKE_LAYERS;
     const int strip = (int)get_global_id(0), strips = (int)get_global_size(0);
@@ -115,7 +116,8 @@ __kernel void lenticular_rows(LAYERS, float pitch, float tilt, float center, __g
             const float16 s = first.x + scale.x * (flips.x ? output_size.x - 1 - column : column) - base;
             uint16 colors = OPAQUE;
             for (int c = 0; c < 3; c++) {
-                const float16 lens = start + column * per_pixel + (ODD_LANES ? (float16)shift[3 + c] : (float16)shift[c]) * pitch;
+                const float16 shifted = ODD_LANES ? (float16)shift[3 + c] : (float16)shift[c];
+                const float16 lens = start + column * per_pixel + shifted * pitch;
                 const float16 fraction = lens - convert_float16(convert_int16(lens));
                 const float16 view = fraction < 0.0f ? fraction + 1.0f : fraction;
                 colors |= look_at(&layers, &side, &mirrored, slopes, s, (view - 0.5f) * steps, c);

@@ -57,7 +57,8 @@ inline uint16 colors_at(__global const uint *picture, int2 size, Points point)
 {
     const float16 x = clamp(point.x, 0.0f, size.x - 1.0f), y = clamp(point.y, 0.0f, size.y - 1.0f);
     const int16 left = convert_int16(x), top = convert_int16(y);
-    const int16 right = min(left + 1, (int16)(size.x - 1)), upper = top * size.x, lower = min(top + 1, (int16)(size.y - 1)) * size.x;
+    const int16 right = min(left + 1, (int16)(size.x - 1)), upper = top * size.x;
+    const int16 lower = min(top + 1, (int16)(size.y - 1)) * size.x;
     const uint16 a = GATHER(uint16, picture, (upper + left)), b = GATHER(uint16, picture, (upper + right));
     const uint16 c = GATHER(uint16, picture, (lower + left)), d = GATHER(uint16, picture, (lower + right));
     const float16 across = x - convert_float16(left), down = y - convert_float16(top);
@@ -98,7 +99,8 @@ inline float roof_under(__global const float *roof, int stride, int bits, int2 s
     const float2 from = (float2)(min(min(x.s0, x.s1), min(x.s2, x.s3)), min(y.s0, y.s1)) - margin;
     const float2 to = (float2)(max(max(x.s0, x.s1), max(x.s2, x.s3)), max(y.s0, y.s1)) + margin;
     const float2 last_pixel = convert_float2(size - 1);
-    const int2 first = convert_int2(clamp(from, 0.0f, last_pixel)) >> bits, last = convert_int2(clamp(to, 0.0f, last_pixel)) >> bits;
+    const int2 first = convert_int2(clamp(from, 0.0f, last_pixel)) >> bits;
+    const int2 last = convert_int2(clamp(to, 0.0f, last_pixel)) >> bits;
     float greatest = -INFINITY;
     for (int row = first.y; row <= last.y; row++)
         for (int column = first.x; column <= last.x; column++)

@@ -132,13 +132,13 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
     parameters_ = parameters;
     geometry_ = LightFieldGeometry(parameters, shape_.picture, shape_.output);
     translate_errors(*device_, [&] {
+        if (built_ != parameters.layout && parameters.layout == LightFieldLayout::Rgbd)
+            place_color_ = Program(*device_, "light_field_rgbd").kernel("place_color");
         if (built_ != parameters.layout)
             kernel_ = kernel_of(*device_, parameters.layout);
         built_ = parameters.layout;
-        if (parameters.layout == LightFieldLayout::Rgbd) {
-            place_color_ = Program(*device_, "light_field_rgbd").kernel("place_color");
+        if (parameters.layout == LightFieldLayout::Rgbd)
             return;
-        }
         if (!layers_ || layers_->size() != geometry_.layers)
             layers_.emplace(queue_, geometry_.layers, shape_.picture);
         const std::vector<cl_float> slopes = slopes_of(parameters);
