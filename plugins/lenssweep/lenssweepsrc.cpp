@@ -50,6 +50,7 @@
 
 #include "calibrated_powers.h"
 #include "lenssweepsrc_private.h"
+#include "stream_pad.h"
 
 #include <exception>
 #include <gst/video/video.h>
@@ -252,19 +253,33 @@ static gboolean set_caps(GstBaseSrc *source, GstCaps *caps)
     return TRUE;
 }
 
-/* GstBaseSrc does not say what did not fit. */
+static void post_nothing_fits(GstBaseSrc *source, GstCaps *possible)
+{
+    GST_ELEMENT_ERROR(
+        source, STREAM, FORMAT,
+        ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
+         "a frame rate of planes times rate; put a videoconvert behind this element for other formats."),
+        ("possible caps are %" GST_PTR_FORMAT, possible));
+}
+
+/* GstBaseSrc does not say what did not fit, and gives up where a capsfilter is set to other caps between its
+ * answer to what it takes and the caps that follow from it, if it has not said so yet. Ten times in a row is
+ * no coincidence any more. */
 static gboolean negotiate(GstBaseSrc *source)
 {
-    if (GST_BASE_SRC_CLASS(gst_lens_sweep_src_parent_class)->negotiate(source))
-        return TRUE;
-    g_autoptr(GstCaps) possible = gst_pad_query_caps(GST_BASE_SRC_PAD(source), nullptr);
-    g_autoptr(GstCaps) common = gst_pad_get_allowed_caps(GST_BASE_SRC_PAD(source));
-    if (common && gst_caps_is_empty(common) && !gst_caps_is_empty(possible))
-        GST_ELEMENT_ERROR(
-            source, STREAM, FORMAT,
-            ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
-             "a frame rate of planes times rate; put a videoconvert behind this element for other formats."),
-            ("possible caps are %" GST_PTR_FORMAT, possible));
+    GstPad *pad = GST_BASE_SRC_PAD(source);
+    for (int attempt = 0; attempt < 10; attempt++) {
+        if (GST_BASE_SRC_CLASS(gst_lens_sweep_src_parent_class)->negotiate(source) && caps_are_taken(pad))
+            return TRUE;
+        if (GST_PAD_IS_FLUSHING(pad) || GST_LENS_SWEEP_SRC(source)->state->failed)
+            return FALSE;
+        g_autoptr(GstCaps) possible = gst_pad_query_caps(pad, nullptr);
+        g_autoptr(GstCaps) common = gst_pad_get_allowed_caps(pad);
+        if (common && gst_caps_is_empty(common) && !gst_caps_is_empty(possible)) {
+            post_nothing_fits(source, possible);
+            return FALSE;
+        }
+    }
     return FALSE;
 }
 

@@ -66,17 +66,7 @@ static bool tell_frame_rate(GstLensSweepSrc *self, double frame_rate)
     const GValue *told = gst_structure_get_value(gst_caps_get_structure(caps, 0), "framerate");
     if (told && gst_value_compare(told, &fraction) == GST_VALUE_EQUAL)
         return true;
-    caps = gst_caps_make_writable(caps);
-    gst_caps_set_value(caps, "framerate", &fraction);
-    if (gst_pad_peer_query_accept_caps(GST_BASE_SRC_PAD(self), caps))
-        return gst_base_src_set_caps(GST_BASE_SRC(self), caps);
-    GST_ELEMENT_ERROR(
-        self, STREAM, FORMAT,
-        ("Nothing downstream takes the new frame rate of %d/%d, which is planes times rate. Ask "
-         "for no frame rate there, or leave the rate as it was.",
-         numerator, denominator),
-        (nullptr));
-    return false;
+    return gst_base_src_negotiate(GST_BASE_SRC(self));
 }
 
 /* False if the stream cannot go on with them. */
@@ -216,6 +206,8 @@ static GstFlowReturn step(GstLensSweepSrc *self, GstBuffer **buffer)
     run(self);
     if (!take_changes(self))
         return GST_FLOW_NOT_NEGOTIATED;
+    if (!state.running) /* caps of another format came with the new frame rate */
+        return GST_FLOW_OK;
     const gint64 deadline = deadline_of(self);
     if (dff::host_now_ns() >= deadline) {
         GST_ELEMENT_ERROR(self, RESOURCE, READ,

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
+static GstFlowReturn try_to_negotiate(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     g_autoptr(GstCaps) templ = gst_pad_get_pad_template_caps(self->src_pad);
@@ -36,11 +36,21 @@ static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
         return GST_FLOW_ERROR;
     }
     g_autoptr(GstCaps) complete = gst_video_info_to_caps(&info);
-    if (!change_caps(self->src_pad, complete))
+    if (!change_caps(self->src_pad, complete) || !caps_are_taken(self->src_pad))
         return GST_PAD_IS_FLUSHING(self->src_pad) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
     GST_INFO_OBJECT(self, "pictures are %" GST_PTR_FORMAT, complete);
     stream.set_format(info);
     return GST_FLOW_OK;
+}
+
+/* A capsfilter may be set to other caps between its answer to what it takes and the caps that follow from it.
+ * Ten times in a row is no coincidence any more. */
+static GstFlowReturn negotiate(GstLensSweepTestSrc *self)
+{
+    GstFlowReturn flow = GST_FLOW_NOT_NEGOTIATED;
+    for (int attempt = 0; attempt < 10 && flow == GST_FLOW_NOT_NEGOTIATED; attempt++)
+        flow = try_to_negotiate(self);
+    return flow;
 }
 
 /* A token that ends the rendering which begins now. */
@@ -238,7 +248,8 @@ void gst_lens_sweep_test_src_loop(gpointer user_data)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(user_data);
     const GstFlowReturn flow = produce(self);
-    if (flow == GST_FLOW_OK)
+    const bool renegotiates = flow == GST_FLOW_NOT_NEGOTIATED && gst_pad_needs_reconfigure(self->src_pad);
+    if (flow == GST_FLOW_OK || renegotiates)
         return;
     GST_DEBUG_OBJECT(self, "stopping: %s", gst_flow_get_name(flow));
     gst_pad_pause_task(self->src_pad);

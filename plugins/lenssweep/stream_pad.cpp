@@ -29,6 +29,12 @@ bool change_caps(GstPad *pad, GstCaps *caps)
     return (current && gst_caps_is_equal(current, caps)) || gst_pad_set_caps(pad, caps);
 }
 
+bool caps_are_taken(GstPad *pad)
+{
+    g_autoptr(GstCaps) sent = gst_pad_get_current_caps(pad);
+    return !sent || gst_pad_peer_query_accept_caps(pad, sent);
+}
+
 guint group_of(GstPad *pad)
 {
     guint group = GST_GROUP_ID_INVALID;

@@ -11,5 +11,9 @@ void begin_segment(GstPad *pad);
 /* False if the peer refuses the caps. */
 bool change_caps(GstPad *pad, GstCaps *caps);
 
+/* Whether the peer still takes the caps that were sent. A sticky event counts as sent even where it is
+ * refused; the buffer behind it ends the stream then. */
+bool caps_are_taken(GstPad *pad);
+
 /* The group that begin_stream() was given. */
 guint group_of(GstPad *pad);

@@ -2,11 +2,13 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 /* What may change while the source plays, again and again, however it is triggered: the frames come again
  * with their right planes each time, and the source can be stopped. */
+#include "fickle_filter.h"
 #include "proofs.h"
 
 #include <atomic>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <string_view>
 #include <thread>
 
 using namespace dff;
@@ -119,6 +121,13 @@ public:
         stream_.play();
     }
 
+    GstElement *filter() { return filter_.get(); }
+
+    bool gets_width(int width)
+    {
+        return stream_.wait_until([width](const Watched &frames) { return frames.width == width; }, patience);
+    }
+
     void change(int k) { change_.make(source_.get(), filter_.get(), wiring_.rate, k); }
 
     /* Two sweeps with the k-th value. */
@@ -216,6 +225,21 @@ TEST_P(Changes, another_thread_may_make_them_while_the_source_starts_and_stops)
     other.join();
     stream.change(19);
     EXPECT_TRUE(stream.comes_again(19)) << stream.stats();
+    EXPECT_EQ(stream.error(), std::nullopt);
+    stream.expect_right_labels();
+}
+
+TEST_P(Changes, what_downstream_takes_may_change_while_they_are_told)
+{
+    ChangedStream stream(wiring(), change());
+    const FickleFilter fickle(stream.filter(), 144);
+    const std::string_view name = change().name;
+    if (name != "caps" && name != "rate") { /* these are told in no caps but the first */
+        EXPECT_TRUE(stream.stop_at_once());
+        stream.play();
+    }
+    stream.change(0);
+    EXPECT_TRUE(stream.gets_width(144)) << stream.stats();
     EXPECT_EQ(stream.error(), std::nullopt);
     stream.expect_right_labels();
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "fickle_filter.h"
 #include "support.h"
 
 #include <algorithm>
@@ -17,6 +18,12 @@ const std::string small = " ! video/x-raw,width=64,height=48 ! ";
 std::string error_of(const std::string &properties, const std::string &rest = small + "fakesink")
 {
     return Pipeline("lenssweeptestsrc num-buffers=4 " + properties + rest).run();
+}
+
+int width_of(GstSample *sample)
+{
+    const GstVideoInfo info = info_of(sample);
+    return GST_VIDEO_INFO_WIDTH(&info);
 }
 
 /* Files of 40 x 30 pixels that go with the test. */
@@ -183,6 +190,23 @@ TEST(TestSrcStream, caps_can_change_while_playing)
     const GstVideoInfo info = info_of(last.get());
     EXPECT_EQ(GST_VIDEO_INFO_WIDTH(&info), 100);
     EXPECT_EQ(gst_buffer_get_size(gst_sample_get_buffer(last.get())), GST_VIDEO_INFO_SIZE(&info));
+}
+
+TEST(TestSrcStream, what_downstream_takes_may_change_while_caps_are_told)
+{
+    Pipeline pipeline(
+        "lenssweeptestsrc planes=4 ! capsfilter name=caps caps=video/x-raw,width=64,height=48 ! "
+        "appsink name=out sync=false max-buffers=1");
+    const FickleFilter at_the_start(pipeline.element("caps"), 96);
+    pipeline.set_state(GST_STATE_PLAYING);
+    EXPECT_EQ(width_of(pipeline.pull("out").get()), 96);
+    const FickleFilter in_mid_stream(pipeline.element("caps"), 32);
+    g_autoptr(GstCaps) caps = gst_caps_from_string("video/x-raw,width=100,height=30");
+    g_object_set(pipeline.element("caps"), "caps", caps, nullptr);
+    int width = 96;
+    for (int i = 0; i < 12 && width != 32; i++)
+        width = width_of(pipeline.pull("out").get());
+    EXPECT_EQ(width, 32);
 }
 
 TEST(TestSrcStream, a_live_frame_leaves_when_its_exposure_ends)
