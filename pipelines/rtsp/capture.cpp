@@ -8,7 +8,7 @@ namespace dff {
 
 namespace {
 
-/* The facts of a depth frame, from its meta or else from its caps. */
+/* The facts of the pixels of a depth frame, from its meta or else from its caps. */
 std::optional<GstDepthInfo> depth_info_of(const CapturedFrame &frame)
 {
     GstDepthInfo info;
@@ -88,10 +88,11 @@ void Capture::detach(const std::shared_ptr<Outlet> &outlet)
     call_soon(context_, [this] { start_or_stop(); });
 }
 
-std::optional<GstDepthInfo> Capture::depth_info() const
+std::optional<GstDepthInfo> Capture::depth_info(const std::string &output) const
 {
     const std::lock_guard lock(mutex_);
-    return depth_info_;
+    const auto found = depth_infos_.find(output);
+    return found == depth_infos_.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool Capture::is_wanted() const
@@ -141,9 +142,11 @@ void Capture::publish(const std::string &output, const CapturedFrame &frame)
 {
     delivered_ = true;
     const std::lock_guard lock(mutex_);
-    if (output == "depth")
-        if (const auto info = depth_info_of(frame))
-            depth_info_ = info;
+    if (auto info = depth_info_of(frame)) {
+        if (output == "uncertainty")
+            info->offset = 0.0; /* a deviation is a difference */
+        depth_infos_[output] = *info;
+    }
     const auto [first, last] = outlets_.equal_range(output);
     std::for_each(first, last, [&](const auto &entry) { entry.second->push(frame); });
 }

@@ -32,8 +32,8 @@ public:
     /* Whether there are outlets. */
     bool is_wanted() const;
 
-    /* What the last depth frame said of its pixels; nothing before the first. */
-    std::optional<GstDepthInfo> depth_info() const;
+    /* What the last frame of such an output said of its pixels; nothing before the first. */
+    std::optional<GstDepthInfo> depth_info(const std::string &output) const;
 
 private:
     /* These run in thread_. */
@@ -50,7 +50,7 @@ private:
      * it. */
     mutable std::mutex mutex_;
     std::multimap<std::string, std::shared_ptr<Outlet>> outlets_;
-    std::optional<GstDepthInfo> depth_info_;
+    std::map<std::string, GstDepthInfo> depth_infos_; /* by output */
 
     std::atomic<bool> delivered_{false}; /* whether the source gave a frame since it was last started */
 

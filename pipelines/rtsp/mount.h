@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -15,8 +16,9 @@ struct Mount {
         outputs; /* of the source that it shows; an appsrc of the same name stands for each */
     std::set<std::string>
         elements; /* that may be missing on a machine, and without which the mount is left out */
-    std::set<unsigned> depth_streams; /* streams whose SDP says what the depth's pixels mean */
-    std::string launch;               /* with payloaders pay0, pay1, ... */
+    std::map<unsigned, std::string>
+        depth_streams;  /* streams whose SDP says what the pixels of this output mean */
+    std::string launch; /* with payloaders pay0, pay1, ... */
 };
 
 std::span<const Mount> all_mounts();

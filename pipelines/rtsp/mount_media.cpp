@@ -45,13 +45,14 @@ public:
 
     void describe(GstSDPMessage *sdp) const
     {
-        const auto info = capture_->depth_info();
-        if (!info)
-            return;
-        for (const unsigned stream : mount_.depth_streams)
+        for (const auto &[stream, output] : mount_.depth_streams) {
+            const auto info = capture_->depth_info(output);
+            if (!info)
+                continue;
             for (const auto &[name, value] : dff::depth_attributes(*info))
                 gst_sdp_media_add_attribute(const_cast<GstSDPMedia *>(gst_sdp_message_get_media(sdp, stream)),
                                             name.c_str(), value.c_str());
+        }
     }
 
 private:

@@ -12,7 +12,8 @@ namespace {
 const char *const simulated_rig =
     "lenssweeptestsrc is-live=true rate=10 motion=2 ! tee name=planes"
     "  planes. ! queue ! focalstackmux ! tee name=stacks"
-    "  stacks. ! queue ! dffdepth ! tee name=depth"
+    "  stacks. ! queue ! dffdepth name=dffdepth  dffdepth.src ! tee name=depth"
+    "  dffdepth.uncertainty ! queue ! identity name=uncertainty"
     "  stacks. ! queue ! aifcompose.stack  depth. ! queue ! aifcompose.depth  aifcompose name=aifcompose ! "
     "identity name=aif";
 
@@ -25,10 +26,12 @@ const char *const description =
     "  /color   all-in-focus video, H.264                    /stream  /color and /depth, in step\n"
     "  /depth   depth, lossless, 16-bit JPEG 2000            /rgbd    colour and depth side by side, H.264\n"
     "  /hue     depth in hues, H.264                         /planes  the planes themselves, lossless\n"
+    "  /uncertainty   one standard deviation of each pixel of /depth, lossless, as /depth\n"
     "\n"
     "The source pipeline gives depth where an element named depth has a free source pad or is a tee, and "
     "the\n"
-    "same for aif and planes; or where any element has a free source pad of that name. A mount needs the\n"
+    "same for uncertainty, aif and planes; or where any element has a free source pad of that name. A mount "
+    "needs the\n"
     "outputs it shows.";
 
 /* What GLib fills in; freed with it. */

@@ -13,7 +13,7 @@ namespace dff {
 
 namespace {
 
-constexpr const char *output_names[] = {"depth", "aif", "planes"};
+constexpr const char *output_names[] = {"depth", "uncertainty", "aif", "planes"};
 
 /* Frames that may wait while the one before is handed out, which takes no longer than copying its metas. */
 constexpr unsigned waiting_frames = 4;
@@ -56,8 +56,9 @@ SourcePipeline::SourcePipeline(const std::string &launch) : pipeline_(parse(laun
     if (outputs_.empty())
         throw std::invalid_argument(
             "The source pipeline has no output: name the element whose source pad gives "
-            "the depth depth, that of the all-in-focus picture aif, that of the planes "
-            "planes; if the pad is linked, a tee behind it");
+            "the depth depth, that of its uncertainty uncertainty, that of the all-in-focus picture aif, "
+            "that "
+            "of the planes planes; if the pad is linked, a tee behind it");
     const ObjectPointer<GstClock> clock(gst_system_clock_obtain());
     gst_pipeline_use_clock(pipeline_.get(), clock.get());
 }

@@ -21,7 +21,7 @@ using Context = std::unique_ptr<GMainContext, ContextUnref>;
 /* What the frames of an output must be, for its mounts to show it. */
 const char *caps_of_output(const std::string &output)
 {
-    if (output == "depth")
+    if (output == "depth" || output == "uncertainty")
         return "video/x-raw, format=GRAY16_LE";
     return output == "aif" ? "video/x-raw" : "ANY";
 }

@@ -16,7 +16,10 @@
  * `expTime` in seconds; the first part has all `focusPowers`. The pad may be requested and released while the
  * others stream: a picture whose time has no stack makes a file without planes. Put a queue on every branch.
  *
- * Colour, depth and stack of the same running time belong together.
+ * With dffdepth's `uncertainty` on the request pad of that name the first part has a channel `uncertainty.Z`:
+ * one standard deviation of Z, in what Z is in, NaN where it is unknown.
+ *
+ * Colour, depth, stack and uncertainty of the same running time belong together.
  *
  * ## Example launch line
  * |[
@@ -24,6 +27,10 @@
  *     focalstackmux ! tee name=s  s. ! queue ! dffdepth ! tee name=d  d. ! queue ! c.depth \
  *     s. ! queue ! c.stack  aifcompose name=c ! queue ! e.color  d. ! queue ! e.depth \
  *     s. ! queue ! e.stack  depthexrenc name=e ! multifilesink location=sweep-%02d.exr
+ * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=5 far=0.5 ! videoconvert ! video/x-raw,format=RGB ! \
+ *     focalstackmux ! tee name=s  s. ! queue ! dffdepth name=d  d.src ! tee name=t  t. ! queue ! c.depth \
+ *     s. ! queue ! c.stack  aifcompose name=c ! queue ! e.color  t. ! queue ! e.depth \
+ *     d.uncertainty ! queue ! e.uncertainty  depthexrenc name=e ! multifilesink location=sigma-%02d.exr
  * ]|
  */
 #include "depthexrenc.h"
@@ -80,7 +87,7 @@ struct State {
 
     /* The streaming thread's own. */
     std::optional<dff::DepthScale> scale;
-    std::vector<float> distances; /* of `scale` */
+    std::vector<float> distances, slopes; /* of `scale` */
 };
 
 /* A stack with all its planes mapped for reading. */
@@ -169,7 +176,7 @@ void add_planes(std::vector<dff::ExrPart> &parts, const MappedPlanes &planes, co
         if (meta)
             gst_focal_stack_meta_get_focus(meta, z, &focus);
         powers.push_back(static_cast<float>(focus.power));
-        parts.push_back({name, planes.plane(z), std::nullopt, focus_attributes(focus)});
+        parts.push_back({name, planes.plane(z), std::nullopt, std::nullopt, focus_attributes(focus)});
     }
     if (meta)
         parts.front().attributes.emplace_back("focusPowers", powers);
@@ -214,27 +221,23 @@ static std::vector<guint8> encode(GstDepthFileEnc *encoder, const dff::FrameSet 
     if (state.scale != dff::scale_of(facts)) {
         state.scale = dff::scale_of(facts);
         state.distances = dff::distance_table(*state.scale);
+        state.slopes = dff::distance_slope_table(*state.scale);
     }
 
-    std::vector<dff::ExrPart> parts{{"all-in-focus", colour.view(), depth.view(), depth_attributes(facts)}};
+    std::optional<dff::MappedPicture> uncertainty;
+    if (frames.uncertainty)
+        uncertainty.emplace(frames.uncertainty, *frames.uncertainty_info);
+
+    std::vector<dff::ExrPart> parts{{"all-in-focus", colour.view(), depth.view(),
+                                     uncertainty ? std::optional(uncertainty->view()) : std::nullopt,
+                                     depth_attributes(facts)}};
     std::optional<MappedPlanes> planes;
     if (frames.stack) {
         planes.emplace(frames.stack, *frames.stack_info);
         add_planes(parts, *planes, frames);
     }
-    return dff::write_exr(parts, {compression_of(self), linear_light(*frames.colour_info), state.distances});
-}
-
-static GstAggregatorPad *create_new_pad(GstAggregator *aggregator, GstPadTemplate *templ, const gchar *,
-                                        const GstCaps *)
-{
-    g_autoptr(GstPad) taken = gst_element_get_static_pad(GST_ELEMENT(aggregator), templ->name_template);
-    if (taken) {
-        GST_WARNING_OBJECT(aggregator, "The pad %s is in use already", templ->name_template);
-        return nullptr;
-    }
-    return GST_AGGREGATOR_PAD(g_object_new(GST_TYPE_AGGREGATOR_PAD, "name", templ->name_template, "direction",
-                                           GST_PAD_SINK, "template", templ, nullptr));
+    return dff::write_exr(
+        parts, {compression_of(self), linear_light(*frames.colour_info), state.distances, state.slopes});
 }
 
 static void set_property(GObject *object, guint id, const GValue *value, GParamSpec *pspec)
@@ -282,7 +285,6 @@ static void gst_depth_exr_enc_class_init(GstDepthExrEncClass *klass)
                           static_cast<int>(dff::ExrCompression::Zip),
                           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS |
                                                    GST_PARAM_MUTABLE_PLAYING)));
-    GST_AGGREGATOR_CLASS(klass)->create_new_pad = create_new_pad;
     GST_DEPTH_FILE_ENC_CLASS(klass)->encode = encode;
     gst_element_class_add_static_pad_template_with_gtype(element_class, &stack_template,
                                                          GST_TYPE_AGGREGATOR_PAD);

@@ -18,6 +18,7 @@ namespace {
 struct State {
     std::optional<GstVideoInfo> colour;
     std::optional<GstVideoInfo> depth;
+    std::optional<GstVideoInfo> uncertainty;
     std::optional<GstFocalStackInfo> stack;
     GstCaps *depth_caps = nullptr;
 
@@ -36,6 +37,8 @@ static GstStaticPadTemplate colour_template = GST_STATIC_PAD_TEMPLATE(
     "color", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("RGB")));
 static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
     "depth", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
+static GstStaticPadTemplate uncertainty_template = GST_STATIC_PAD_TEMPLATE(
+    "uncertainty", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
 
 static State &state_of(GstDepthFileEnc *self)
 {
@@ -74,17 +77,21 @@ static GstFlowReturn push_file(GstDepthFileEnc *self, const dff::FrameSet &frame
 static GstFlowReturn encode(GstDepthFileEnc *self, const dff::MatchedBuffers &buffers)
 {
     const State &state = state_of(self);
-    if (!state.colour || !state.depth || (buffers.stack && !state.stack))
+    if (!state.colour || !state.depth || (buffers.stack && !state.stack) ||
+        (buffers.uncertainty && !state.uncertainty))
         return GST_FLOW_NOT_NEGOTIATED;
-    GST_LOG_OBJECT(self, "%" GST_PTR_FORMAT " with depth%s", buffers.colour.get(),
-                   buffers.stack ? " and its stack" : "");
+    GST_LOG_OBJECT(self, "%" GST_PTR_FORMAT " with depth%s%s", buffers.colour.get(),
+                   buffers.stack ? ", its stack" : "", buffers.uncertainty ? ", its uncertainty" : "");
     try {
         check_sizes(*state.colour, *state.depth, "depth");
         if (buffers.stack)
             check_sizes(*state.colour, state.stack->frame, "stack");
+        if (buffers.uncertainty)
+            check_sizes(*state.colour, *state.uncertainty, "uncertainty");
         return push_file(self,
                          {buffers.colour.get(), &*state.colour, buffers.depth.get(), &*state.depth,
-                          state.depth_caps, buffers.stack.get(), buffers.stack ? &*state.stack : nullptr});
+                          state.depth_caps, buffers.stack.get(), buffers.stack ? &*state.stack : nullptr,
+                          buffers.uncertainty.get(), buffers.uncertainty ? &*state.uncertainty : nullptr});
     } catch (const std::exception &error) {
         GST_ELEMENT_ERROR(self, STREAM, ENCODE, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
@@ -94,7 +101,8 @@ static GstFlowReturn encode(GstDepthFileEnc *self, const dff::MatchedBuffers &bu
 static GstFlowReturn aggregate(GstAggregator *aggregator, gboolean)
 {
     auto *self = GST_DEPTH_FILE_ENC(aggregator);
-    const dff::InputPads pads{find_pad(self, "color"), find_pad(self, "depth"), find_pad(self, "stack")};
+    const dff::InputPads pads{find_pad(self, "color"), find_pad(self, "depth"), find_pad(self, "stack"),
+                              find_pad(self, "uncertainty")};
     dff::MatchedBuffers buffers;
     switch (dff::match_inputs(pads, buffers)) {
     case dff::Match::Waiting:
@@ -125,6 +133,8 @@ static bool set_caps(GstDepthFileEnc *self, const char *pad, GstCaps *caps)
     if (g_str_equal(pad, "depth")) {
         state.depth = info;
         gst_caps_replace(&state.depth_caps, caps);
+    } else if (g_str_equal(pad, "uncertainty")) {
+        state.uncertainty = info;
     } else {
         state.colour = info;
         gst_pad_mark_reconfigure(GST_AGGREGATOR_SRC_PAD(self));
@@ -195,9 +205,22 @@ static gboolean stop(GstAggregator *aggregator)
     State &state = state_of(GST_DEPTH_FILE_ENC(aggregator));
     state.colour.reset();
     state.depth.reset();
+    state.uncertainty.reset();
     state.stack.reset();
     gst_clear_caps(&state.depth_caps);
     return TRUE;
+}
+
+static GstAggregatorPad *create_new_pad(GstAggregator *aggregator, GstPadTemplate *templ, const gchar *,
+                                        const GstCaps *)
+{
+    g_autoptr(GstPad) taken = gst_element_get_static_pad(GST_ELEMENT(aggregator), templ->name_template);
+    if (taken) {
+        GST_WARNING_OBJECT(aggregator, "The pad %s is in use already", templ->name_template);
+        return nullptr;
+    }
+    return GST_AGGREGATOR_PAD(g_object_new(GST_TYPE_AGGREGATOR_PAD, "name", templ->name_template, "direction",
+                                           GST_PAD_SINK, "template", templ, nullptr));
 }
 
 static void finalize(GObject *object)
@@ -232,9 +255,10 @@ static void gst_depth_file_enc_class_init(GstDepthFileEncClass *klass)
     aggregator_class->sink_event = sink_event;
     aggregator_class->update_src_caps = update_src_caps;
     aggregator_class->propose_allocation = propose_allocation;
+    aggregator_class->create_new_pad = create_new_pad;
     aggregator_class->start = start;
     aggregator_class->stop = stop;
-    for (GstStaticPadTemplate *pad_template : {&colour_template, &depth_template})
+    for (GstStaticPadTemplate *pad_template : {&colour_template, &depth_template, &uncertainty_template})
         gst_element_class_add_static_pad_template_with_gtype(GST_ELEMENT_CLASS(klass), pad_template,
                                                              GST_TYPE_AGGREGATOR_PAD);
     gst_type_mark_as_plugin_api(GST_TYPE_DEPTH_FILE_ENC, static_cast<GstPluginAPIFlags>(0));

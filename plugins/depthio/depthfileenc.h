@@ -8,7 +8,7 @@
 
 namespace dff {
 
-/* A picture, its depth and, if it came, the stack it was computed from. */
+/* A picture, its depth and, if they came, the stack it was computed from and how uncertain the depth is. */
 struct FrameSet {
     GstBuffer *colour;
     const GstVideoInfo *colour_info;
@@ -17,6 +17,8 @@ struct FrameSet {
     const GstCaps *depth_caps;
     GstBuffer *stack; /* or nullptr */
     const GstFocalStackInfo *stack_info;
+    GstBuffer *uncertainty; /* or nullptr; one standard deviation in the pixels of the depth */
+    const GstVideoInfo *uncertainty_info;
 };
 
 } // namespace dff
@@ -24,9 +26,9 @@ struct FrameSet {
 #define GST_TYPE_DEPTH_FILE_ENC (gst_depth_file_enc_get_type())
 G_DECLARE_DERIVABLE_TYPE(GstDepthFileEnc, gst_depth_file_enc, GST, DEPTH_FILE_ENC, GstAggregator)
 
-/* What encoders of colour and depth share: the pads `color` and `depth`, and `stack` where the derived class
- * has a template for it, which may come and go while the others stream. Frames of equal running time belong
- * together. */
+/* What encoders of colour and depth share: the pads `color` and `depth`, the request pad `uncertainty`, and
+ * `stack` where the derived class has a template for it. What is requested may come and go while the others
+ * stream. Frames of equal running time belong together. */
 struct _GstDepthFileEncClass {
     GstAggregatorClass parent_class;
 

@@ -16,6 +16,10 @@
  * micrometres, give a cloud in micrometres, with x and y from the picture's centre and z the stage position,
  * or its negative where the stage's positions fall from the nearest plane to the farthest.
  *
+ * With dffdepth's `uncertainty` on the request pad of that name each point has a property `uncertainty`: one
+ * standard deviation of z, in what z is in, NaN where it is unknown. Viewers show it as colours, or leave out
+ * what is too uncertain.
+ *
  * ## Example launch line
  * |[
  * gst-launch-1.0 lenssweeptestsrc num-buffers=6 near=5 far=0.5 ! video/x-raw,width=320,height=240 ! \
@@ -75,7 +79,7 @@ struct State {
     std::optional<dff::CameraCalibration> calibration;
     std::optional<CameraPoints> points;
     std::optional<dff::DepthScale> scale;
-    std::vector<float> distances; /* of `scale` */
+    std::vector<float> distances, slopes; /* of `scale` */
 };
 
 constexpr char unknown_distances[] =
@@ -149,6 +153,7 @@ static void prepare_distances(State &state, const dff::DepthScale &scale, bool o
     if (state.scale == scale)
         return;
     state.distances = dff::distance_table(scale);
+    state.slopes = dff::distance_slope_table(scale);
     if (in_heights && scale.scale < 0.0)
         turn_away(state.distances);
     state.scale = scale;
@@ -194,7 +199,12 @@ static std::vector<guint8> encode(GstDepthFileEnc *encoder, const dff::FrameSet 
     prepare_distances(state, dff::scale_of(facts), orthographic);
     prepare_points(state, seen_by(state, facts, view, orthographic), settings.stride,
                    orthographic ? settings.pixel_size_um : 0.0);
-    return state.points->cloud.write(colour.view(), view, state.distances, settings.max_distance);
+    if (!frames.uncertainty)
+        return state.points->cloud.write(colour.view(), view, state.distances, settings.max_distance);
+    const dff::MappedPicture deviations(frames.uncertainty, *frames.uncertainty_info);
+    const dff::DepthUncertainty uncertainty{deviations.view(), state.slopes};
+    return state.points->cloud.write(colour.view(), view, state.distances, settings.max_distance,
+                                     &uncertainty);
 }
 
 static gboolean start(GstAggregator *aggregator)

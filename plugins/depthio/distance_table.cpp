@@ -4,6 +4,7 @@
 
 #include "optics/dioptre.h"
 
+#include <cmath>
 #include <limits>
 
 namespace dff {
@@ -25,6 +26,15 @@ double distance_of(DepthUnit unit, double value)
     return value;
 }
 
+/* By how much distance_of() changes with `value`, per unit. */
+double slope_of(DepthUnit unit, double value)
+{
+    if (unit != DepthUnit::Dioptre)
+        return distance_of(unit, 1.0);
+    const double distance = distance_of(unit, value);
+    return distance * distance; /* of 1 / value */
+}
+
 } // namespace
 
 std::vector<float> distance_table(const DepthScale &scale)
@@ -34,6 +44,15 @@ std::vector<float> distance_table(const DepthScale &scale)
         distances[pixel] =
             static_cast<float>(distance_of(scale.unit, scale.value(static_cast<uint16_t>(pixel))));
     return distances;
+}
+
+std::vector<float> distance_slope_table(const DepthScale &scale)
+{
+    std::vector<float> slopes(DepthScale::max_pixel + 1, std::numeric_limits<float>::quiet_NaN());
+    for (unsigned pixel = 1; pixel <= DepthScale::max_pixel; pixel++)
+        slopes[pixel] = static_cast<float>(std::abs(scale.scale) *
+                                           slope_of(scale.unit, scale.value(static_cast<uint16_t>(pixel))));
+    return slopes;
 }
 
 } // namespace dff

@@ -13,4 +13,8 @@ namespace dff {
  * distance. */
 std::vector<float> distance_table(const DepthScale &scale);
 
+/* How many of these metres the distance changes by from a pixel to the next, around each of them: what a
+ * standard deviation in pixels is multiplied by. NaN for "no value", infinite where the distance is. */
+std::vector<float> distance_slope_table(const DepthScale &scale);
+
 } // namespace dff

@@ -13,6 +13,7 @@
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <algorithm>
+#include <limits>
 
 namespace dff {
 
@@ -71,6 +72,8 @@ Imf::Header header_of(const ExrPart &part, ExrCompression compression)
         header.channels().insert(channel, Imf::Channel(Imf::HALF));
     if (part.depth)
         header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    if (part.depth && part.uncertainty)
+        header.channels().insert("uncertainty.Z", Imf::Channel(Imf::FLOAT));
     for (const auto &[name, value] : part.attributes) {
         if (const auto *number = std::get_if<float>(&value))
             header.insert(name, Imf::FloatAttribute(*number));
@@ -104,12 +107,29 @@ std::vector<float> distances_of(const PictureView &depth, std::span<const float>
     return pixels;
 }
 
+std::vector<float> deviations_of(const PictureView &depth, const PictureView &uncertainty,
+                                 std::span<const float> slopes)
+{
+    std::vector<float> pixels(size_t{depth.width} * depth.height, std::numeric_limits<float>::quiet_NaN());
+    for (unsigned y = 0; y < depth.height; y++)
+        for (unsigned x = 0; x < depth.width; x++)
+            if (const uint16_t deviation = uncertainty.depth(x, y))
+                pixels[size_t{y} * depth.width + x] = slopes[depth.depth(x, y)] * deviation;
+    return pixels;
+}
+
+/* A channel in single precision. */
+Imf::Slice slice_of(std::vector<float> &pixels, unsigned width)
+{
+    return {Imf::FLOAT, reinterpret_cast<char *>(pixels.data()), sizeof(float), sizeof(float) * width};
+}
+
 void write_part(Imf::OutputPart file, const ExrPart &part, const ExrFormat &format)
 {
     constexpr size_t colour_bytes = 3 * sizeof(half);
     const unsigned width = part.colour.width;
     std::vector<half> colours = linear_colours(part.colour, format.linear);
-    std::vector<float> distances;
+    std::vector<float> distances, deviations;
 
     Imf::FrameBuffer frame;
     size_t channel = 0;
@@ -118,8 +138,11 @@ void write_part(Imf::OutputPart file, const ExrPart &part, const ExrFormat &form
                                       colour_bytes * width));
     if (part.depth) {
         distances = distances_of(*part.depth, format.distances);
-        frame.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(distances.data()), sizeof(float),
-                                     sizeof(float) * width));
+        frame.insert("Z", slice_of(distances, width));
+    }
+    if (part.depth && part.uncertainty) {
+        deviations = deviations_of(*part.depth, *part.uncertainty, format.slopes);
+        frame.insert("uncertainty.Z", slice_of(deviations, width));
     }
     file.setFrameBuffer(frame);
     file.writePixels(static_cast<int>(part.colour.height));

@@ -20,11 +20,12 @@ enum class ExrCompression { None, Rle, Zips, Zip, Piz, Dwaa, Dwab };
 using ExrAttribute = std::pair<std::string, std::variant<float, std::string, std::vector<float>>>;
 
 /* One picture of a file: R, G, B in half precision, linear light, and, if there is depth, Z in single
- * precision. */
+ * precision, with uncertainty.Z if that is known too. */
 struct ExrPart {
     std::string name;
     PictureView colour; /* 8-bit RGB */
     std::optional<PictureView> depth;
+    std::optional<PictureView> uncertainty; /* one standard deviation of `depth`, in its pixels; 0: unknown */
     std::vector<ExrAttribute> attributes;
 };
 
@@ -33,6 +34,7 @@ struct ExrFormat {
     ExrCompression compression = ExrCompression::Zip;
     std::array<float, 256> linear{};  /* of each 8-bit value of the colours */
     std::span<const float> distances; /* of each depth pixel there can be, see distance_table() */
+    std::span<const float> slopes;    /* likewise, see distance_slope_table() */
 };
 
 /* An OpenEXR file of parts of one size; one with several parts is a multi-part file. Throws std::exception if

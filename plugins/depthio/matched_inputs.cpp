@@ -56,22 +56,25 @@ bool is_before(const Head &one, const Head &other)
     return time && other_time && *time + tolerance < *other_time;
 }
 
-/* The stack of a picture. Waiting: it may come yet; Ready: `stack` is it, or empty if there is none. */
-Match match_stack(GstAggregatorPad *pad, const Head &colour, std::optional<Head> &stack)
+/* What else there is of a picture, on a pad that may be missing. Waiting: it may come yet; Ready: `found` is
+ * it, or empty if there is none. */
+Match match_to(const Head &colour, GstAggregatorPad *pad, std::optional<Head> &found)
 {
-    stack.emplace(pad);
-    if (!stack->buffer) {
-        stack.reset();
+    if (!pad)
+        return Match::Ready;
+    found.emplace(pad);
+    if (!found->buffer) {
+        found.reset();
         const bool released = GST_OBJECT_PARENT(pad) == nullptr;
         return released || gst_aggregator_pad_is_eos(pad) ? Match::Ready : Match::Waiting;
     }
-    if (stack->is_gap() || is_before(*stack, colour)) {
-        stack->drop(stack->is_gap() ? "A gap" : "There is no picture of this stack");
+    if (found->is_gap() || is_before(*found, colour)) {
+        found->drop(found->is_gap() ? "A gap" : "There is no picture of its time");
         return Match::Again;
     }
-    if (is_before(colour, *stack)) {
-        GST_DEBUG_OBJECT(pad, "There is no stack of %" GST_PTR_FORMAT, colour.buffer.get());
-        stack.reset();
+    if (is_before(colour, *found)) {
+        GST_DEBUG_OBJECT(pad, "There is none for %" GST_PTR_FORMAT, colour.buffer.get());
+        found.reset();
     }
     return Match::Ready;
 }
@@ -96,11 +99,13 @@ Match match_inputs(const InputPads &pads, MatchedBuffers &buffers)
             depth.drop("There is no picture of this depth");
         return Match::Again;
     }
-    std::optional<Head> stack;
-    if (pads.stack)
-        if (const Match match = match_stack(pads.stack.get(), colour, stack); match != Match::Ready)
-            return match;
-    buffers = {colour.take(), depth.take(), stack ? stack->take() : nullptr};
+    std::optional<Head> stack, uncertainty;
+    if (const Match match = match_to(colour, pads.stack.get(), stack); match != Match::Ready)
+        return match;
+    if (const Match match = match_to(colour, pads.uncertainty.get(), uncertainty); match != Match::Ready)
+        return match;
+    buffers = {colour.take(), depth.take(), stack ? stack->take() : nullptr,
+               uncertainty ? uncertainty->take() : nullptr};
     return buffers.colour && buffers.depth ? Match::Ready : Match::Again;
 }
 

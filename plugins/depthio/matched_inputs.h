@@ -19,21 +19,22 @@ struct BufferUnref {
 using OwnedBuffer = std::unique_ptr<GstBuffer, BufferUnref>;
 
 /* The pads whose first buffers belong together where they have the same running time; those without a time go
- * by their order. `stack` may be missing, and may be released while this looks at it. */
+ * by their order. `stack` and `uncertainty` may be missing, and may be released while this looks at them. */
 struct InputPads {
-    AggregatorPad colour, depth, stack;
+    AggregatorPad colour, depth, stack, uncertainty;
 };
 
 /* Taken off their pads. */
 struct MatchedBuffers {
     OwnedBuffer colour, depth;
-    OwnedBuffer stack; /* nullptr where the pad is missing or at its end, or has no stack of this time */
+    /* nullptr where the pad is missing or at its end, or has none of this time. */
+    OwnedBuffer stack, uncertainty;
 };
 
 enum class Match { Waiting, Again, Ended, Ready };
 
 /* Ready: `buffers` holds the next ones that belong together. A picture without its depth, a depth map without
- * its picture and a stack without both are dropped, which is told in the log. */
+ * its picture, and a stack or an uncertainty without both are dropped, which is told in the log. */
 Match match_inputs(const InputPads &pads, MatchedBuffers &buffers);
 
 } // namespace dff

@@ -20,12 +20,13 @@ struct Vertex {
 constexpr size_t vertex_bytes = 15;
 static_assert(std::endian::native == std::endian::little, "vertices are written as they lie in memory");
 
-std::string header(const char *unit, size_t vertices)
+std::string header(const char *unit, size_t vertices, bool uncertainty)
 {
     return std::string("ply\nformat binary_little_endian 1.0\ncomment ") + unit +
            "; x right, y down, z away from the camera\nelement vertex " + std::to_string(vertices) +
            "\nproperty float x\nproperty float y\nproperty float z\n"
-           "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+           "property uchar red\nproperty uchar green\nproperty uchar blue\n" +
+           (uncertainty ? "property float uncertainty\n" : "") + "end_header\n";
 }
 
 } // namespace
@@ -67,10 +68,19 @@ PointCloud::Point PointCloud::point(const Ray &ray, float distance) const
     return {ray.x * distance, ray.y * distance, distance};
 }
 
+float PointCloud::deviation(const DepthUncertainty &uncertainty, uint16_t depth, unsigned x, unsigned y) const
+{
+    const uint16_t pixels = uncertainty.deviations.depth(x, y);
+    const float metres = pixels > 0 ? uncertainty.slopes[depth] * pixels : NAN;
+    return orthographic_ ? metres * 1e6f : metres;
+}
+
 std::vector<uint8_t> PointCloud::write(const PictureView &colour, const PictureView &depth,
-                                       std::span<const float> distances, double max_distance) const
+                                       std::span<const float> distances, double max_distance,
+                                       const DepthUncertainty *uncertainty) const
 {
     std::vector<Vertex> vertices;
+    std::vector<float> deviations; /* as many, or none */
     vertices.reserve(rays_.size());
     for (unsigned y = 0; y < depth.height; y += stride_)
         for (unsigned x = 0; x < depth.width; x += stride_) {
@@ -80,15 +90,22 @@ std::vector<uint8_t> PointCloud::write(const PictureView &colour, const PictureV
             const Point at = point(rays_[size_t{y / stride_} * columns_ + x / stride_], z);
             const uint8_t *rgb = colour.row(y) + size_t{3} * x;
             vertices.push_back({at.x, at.y, at.z, rgb[0], rgb[1], rgb[2]});
+            if (uncertainty)
+                deviations.push_back(deviation(*uncertainty, depth.depth(x, y), x, y));
         }
 
-    const std::string head = header(orthographic_ ? "micrometres" : "metres", vertices.size());
-    std::vector<uint8_t> file(head.size() + vertices.size() * vertex_bytes);
+    const std::string head =
+        header(orthographic_ ? "micrometres" : "metres", vertices.size(), uncertainty != nullptr);
+    const size_t deviation_bytes = uncertainty ? sizeof(float) : 0;
+    std::vector<uint8_t> file(head.size() + vertices.size() * (vertex_bytes + deviation_bytes));
     std::memcpy(file.data(), head.data(), head.size());
     uint8_t *out = file.data() + head.size();
-    for (const Vertex &vertex : vertices) {
-        std::memcpy(out, &vertex, vertex_bytes);
+    for (size_t k = 0; k < vertices.size(); k++) {
+        std::memcpy(out, &vertices[k], vertex_bytes);
         out += vertex_bytes;
+        if (uncertainty)
+            std::memcpy(out, &deviations[k], deviation_bytes);
+        out += deviation_bytes;
     }
     return file;
 }

@@ -10,8 +10,16 @@
 
 namespace dff {
 
+/* How far each depth pixel may be off: one standard deviation in pixels, 0 where it is unknown, and how many
+ * metres one pixel makes at each depth pixel there can be, see distance_slope_table(). */
+struct DepthUncertainty {
+    PictureView deviations;
+    std::span<const float> slopes;
+};
+
 /* The points that a camera sees, as a binary little-endian PLY file: x right, y down, z away from the camera,
- * with red, green, blue; in metres, or in micrometres for a camera whose rays are parallel. */
+ * with red, green, blue; in metres, or in micrometres for a camera whose rays are parallel. With an
+ * uncertainty each has one standard deviation of z too, NaN where it is unknown. */
 class PointCloud {
 public:
     /* Looks at every `stride`th pixel of every `stride`th row of the camera's pictures. */
@@ -25,7 +33,8 @@ public:
      * depth pixel there can be, see distance_table(). Pixels without a finite distance up to `max_distance`
      * give no point, nor do those at or behind a camera that is not orthographic. */
     std::vector<uint8_t> write(const PictureView &colour, const PictureView &depth,
-                               std::span<const float> distances, double max_distance) const;
+                               std::span<const float> distances, double max_distance,
+                               const DepthUncertainty *uncertainty = nullptr) const;
 
 private:
     struct Ray {
@@ -42,6 +51,7 @@ private:
 
     bool shows(float distance, double max_distance) const;
     Point point(const Ray &ray, float distance) const;
+    float deviation(const DepthUncertainty &uncertainty, uint16_t depth, unsigned x, unsigned y) const;
 
     bool orthographic_ = false;
     unsigned stride_;

@@ -141,7 +141,7 @@ TEST(ServerOptions, the_default_source_gives_every_output)
 {
     const dff::ServerOptions options = parse({});
     EXPECT_EQ(options.port, 8554);
-    EXPECT_EQ(outputs_of(options.launch), (std::set<std::string>{"aif", "depth", "planes"}));
+    EXPECT_EQ(outputs_of(options.launch), (std::set<std::string>{"aif", "depth", "planes", "uncertainty"}));
 }
 
 TEST(Server, says_why_it_cannot_listen_or_encrypt)

@@ -96,6 +96,29 @@ TEST(Streams, sdp_says_what_the_depth_means)
     EXPECT_DOUBLE_EQ(g_ascii_strtod(scale, nullptr), -5.0 / 65534);
 }
 
+/* In the scale of the depth, as a difference. */
+TEST(Streams, uncertainty_arrives_bit_for_bit_and_says_what_it_means)
+{
+    const std::string source = " name=d  d.src ! queue ! fakesink sync=false  d.uncertainty ! queue ! ";
+    ServerProcess server(sweeps + "is-live=true " + small + depth_of_stacks + source +
+                         "identity name=uncertainty");
+    Receiver client("rtspsrc latency=300 protocols=tcp location=" + server.url("/uncertainty") +
+                    " ! tee name=t  t. ! queue ! rtpj2kdepay ! jpeg2000parse ! avdec_jpeg2000 ! "
+                    "appsink name=sink sync=false  t. ! queue ! appsink name=packets sync=false");
+    GstBuffer *received = client.next_buffer();
+    ASSERT_NE(received, nullptr);
+    const guint64 sequence = gst_buffer_get_depth_meta(received)->sequence;
+
+    Receiver local(sweeps + small + depth_of_stacks + source + "appsink name=sink sync=false");
+    for (guint64 k = 0; k < sequence; k++)
+        ASSERT_NE(local.next_buffer(), nullptr);
+    EXPECT_EQ(checksum(received), checksum(local.next_buffer()));
+
+    const GstStructure *caps = gst_caps_get_structure(gst_sample_get_caps(client.next("packets")), 0);
+    EXPECT_STREQ(gst_structure_get_string(caps, "a-depth-offset"), "0");
+    EXPECT_STREQ(gst_structure_get_string(caps, "a-depth-unit"), "dioptre");
+}
+
 /* The sender's clock at a frame, as RTCP tells it; nothing before the first sender report. */
 std::optional<GstClockTime> sender_time(GstBuffer *buffer)
 {

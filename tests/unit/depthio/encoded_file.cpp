@@ -62,15 +62,17 @@ Buffer colour_frame(unsigned width, unsigned height,
 }
 
 EncodedFile encode_file(const std::string &encoder, unsigned width, unsigned height, Buffer colour,
-                        Buffer depth, const std::string &depth_caps, Buffer stack, unsigned planes)
+                        Buffer depth, const std::string &depth_caps, FurtherInputs further)
 {
     const std::string size = ",width=" + std::to_string(width) + ",height=" + std::to_string(height);
     std::string description = encoder + " name=e ! appsink name=out sync=false";
     description += source("color", "video/x-raw,format=RGB" + size);
     description += source("depth", "video/x-raw,format=GRAY16_LE" + size + depth_caps);
-    if (planes > 0)
+    if (further.stack)
         description +=
-            source("stack", "video/x-focal-stack,format=RGB,planes=" + std::to_string(planes) + size);
+            source("stack", "video/x-focal-stack,format=RGB,planes=" + std::to_string(further.planes) + size);
+    if (further.uncertainty)
+        description += source("uncertainty", "video/x-raw,format=GRAY16_LE" + size + depth_caps);
     g_autoptr(GError) error = nullptr;
     g_autoptr(GstElement) pipeline = gst_parse_launch(description.c_str(), &error);
     if (error)
@@ -79,8 +81,10 @@ EncodedFile encode_file(const std::string &encoder, unsigned width, unsigned hei
     if (gst_element_set_state(pipeline, GST_STATE_PLAYING) != GST_STATE_CHANGE_FAILURE) {
         feed(pipeline, "color", std::move(colour));
         feed(pipeline, "depth", std::move(depth));
-        if (planes > 0)
-            feed(pipeline, "stack", std::move(stack));
+        if (further.stack)
+            feed(pipeline, "stack", std::move(further.stack));
+        if (further.uncertainty)
+            feed(pipeline, "uncertainty", std::move(further.uncertainty));
         file.bytes = pull(pipeline);
     }
     file.error = first_error(pipeline);

@@ -17,10 +17,16 @@ struct EncodedFile {
     std::string error;
 };
 
-/* What an encoder (with its properties) makes of one picture and its depth, and of a stack in RGB if there is
- * one. `depth_caps` are further fields of the depth's caps. */
+/* What else an encoder may be given. */
+struct FurtherInputs {
+    Buffer stack = nullptr; /* RGB */
+    unsigned planes = 0;
+    Buffer uncertainty = nullptr;
+};
+
+/* What an encoder (with its properties) makes of one picture and its depth. `depth_caps` are further fields
+ * of the depth's caps. */
 EncodedFile encode_file(const std::string &encoder, unsigned width, unsigned height, Buffer colour,
-                        Buffer depth, const std::string &depth_caps, Buffer stack = nullptr,
-                        unsigned planes = 0);
+                        Buffer depth, const std::string &depth_caps, FurtherInputs further = {});
 
 } // namespace dff

@@ -89,6 +89,24 @@ EncodedFile picture(const std::string &properties, const std::string &caps = dio
                        depth_frame(width, height, depth_at), caps);
 }
 
+/* In pixels of the depth; unknown in row 7. */
+guint16 deviation_at(unsigned, unsigned y)
+{
+    return y == 7 ? 0 : static_cast<guint16>(20 + y);
+}
+
+/* The same depth from the first of ten planes to the last. */
+Buffer frame_in_planes()
+{
+    GstDepthInfo depth;
+    gst_depth_info_init(&depth);
+    depth.scale = 9.0 / 65534;
+    depth.offset = -depth.scale;
+    Buffer frame = depth_frame(width, height, depth_at);
+    gst_buffer_add_depth_meta(frame.get(), &depth);
+    return frame;
+}
+
 float number(const Imf::Header &header, const char *name)
 {
     const auto *attribute = header.findTypedAttribute<Imf::FloatAttribute>(name);
@@ -178,16 +196,41 @@ TEST(DepthExrEnc, the_facts_of_focus_and_camera_are_attributes)
     EXPECT_EQ(header.channels().findChannel("Z")->type, Imf::FLOAT);
 }
 
+/* By the slope of 1 / power; the table's ends and infinity are in it. */
+TEST(DepthExrEnc, uncertainty_is_in_metres_too)
+{
+    const ExrOnDisk file(encode_file("depthexrenc", width, height, colour_frame(width, height, colour_at),
+                                     depth_frame(width, height, depth_at), dioptres,
+                                     {.uncertainty = depth_frame(width, height, deviation_at)}));
+    Imf::MultiPartInputFile exr(file.name.c_str());
+    const Imf::InputPart part(exr, 0);
+    expect_depth(read_channel(part, "Z"));
+    const std::vector<float> deviation = read_channel(part, "uncertainty.Z");
+    for (unsigned y = 0; y + 1 < height; y++)
+        for (unsigned x = 0; x < width; x++) {
+            const double power = 5.0 * (65535 - depth_at(x, y)) / 65534;
+            const double metres = 5.0 / 65534 * deviation_at(x, y) / (power * power);
+            if (x == 0 || y == 7)
+                EXPECT_TRUE(std::isnan(deviation[y * width + x]));
+            else
+                EXPECT_NEAR(deviation[y * width + x], metres, 1e-5 * metres);
+        }
+}
+
+TEST(DepthExrEnc, uncertainty_of_plane_numbers_is_in_planes)
+{
+    const ExrOnDisk file(encode_file("depthexrenc", width, height, colour_frame(width, height, colour_at),
+                                     frame_in_planes(), "",
+                                     {.uncertainty = depth_frame(width, height, deviation_at)}));
+    Imf::MultiPartInputFile exr(file.name.c_str());
+    const std::vector<float> deviation = read_channel(Imf::InputPart(exr, 0), "uncertainty.Z");
+    EXPECT_NEAR(deviation[3 * width + 5], 23 * 9.0 / 65534, 1e-8);
+}
+
 TEST(DepthExrEnc, plane_numbers_are_not_called_metres)
 {
-    GstDepthInfo depth;
-    gst_depth_info_init(&depth);
-    depth.scale = 9.0 / 65534;
-    depth.offset = -depth.scale;
-    Buffer frame = depth_frame(width, height, depth_at);
-    gst_buffer_add_depth_meta(frame.get(), &depth);
     const ExrOnDisk file(encode_file("depthexrenc", width, height, colour_frame(width, height, colour_at),
-                                     std::move(frame), ""));
+                                     frame_in_planes(), ""));
     Imf::MultiPartInputFile exr(file.name.c_str());
     EXPECT_EQ(text(exr.header(0), "depthUnit"), "plane");
     EXPECT_NEAR(read_channel(Imf::InputPart(exr, 0), "Z").back(), 9.0, 1e-5);
@@ -209,8 +252,8 @@ TEST(DepthExrEnc, a_whole_stack_is_a_multi_part_file)
         gst_focal_stack_meta_set_focus(meta, z, &focus);
     }
     const ExrOnDisk file(encode_file("depthexrenc", width, height, colour_frame(width, height, colour_at),
-                                     depth_frame(width, height, depth_at), dioptres, std::move(stack),
-                                     planes));
+                                     depth_frame(width, height, depth_at), dioptres,
+                                     {.stack = std::move(stack), .planes = planes}));
     Imf::MultiPartInputFile exr(file.name.c_str());
     ASSERT_EQ(exr.parts(), 1 + static_cast<int>(planes));
     EXPECT_EQ(exr.header(0).name(), "all-in-focus");

@@ -21,6 +21,7 @@ const std::string dioptres = ",depth-unit=dioptre,depth-near=5.0,depth-far=0.0";
 struct Point {
     float x, y, z;
     std::array<guint8, 3> colour;
+    float uncertainty;
 };
 
 /* A reader of its own for what such a file says of itself. */
@@ -42,12 +43,18 @@ std::vector<Point> read_ply(const std::vector<guint8> &bytes)
             properties += type + " " + name + ";";
         }
     }
-    EXPECT_EQ(properties, "float x;float y;float z;uchar red;uchar green;uchar blue;");
-    EXPECT_EQ(bytes.size(), header_size + 15 * count);
+    const bool uncertain = properties.ends_with("float uncertainty;");
+    EXPECT_EQ(properties, std::string("float x;float y;float z;uchar red;uchar green;uchar blue;") +
+                              (uncertain ? "float uncertainty;" : ""));
+    const size_t size = uncertain ? 19 : 15;
+    EXPECT_EQ(bytes.size(), header_size + size * count);
     std::vector<Point> points(count);
-    for (size_t k = 0; k < count && header_size + 15 * (k + 1) <= bytes.size(); k++) {
-        std::memcpy(&points[k], bytes.data() + header_size + 15 * k, 12);
-        std::memcpy(points[k].colour.data(), bytes.data() + header_size + 15 * k + 12, 3);
+    for (size_t k = 0; k < count && header_size + size * (k + 1) <= bytes.size(); k++) {
+        const guint8 *vertex = bytes.data() + header_size + size * k;
+        std::memcpy(&points[k], vertex, 12);
+        std::memcpy(points[k].colour.data(), vertex + 12, 3);
+        points[k].uncertainty = -1.0f;
+        std::memcpy(&points[k].uncertainty, vertex + 15, size - 15);
     }
     return points;
 }
@@ -114,6 +121,29 @@ TEST(DepthPlyEnc, every_known_pixel_is_a_point_in_metres_where_the_camera_saw_it
                           matrix, distortion, seen);
         EXPECT_NEAR(seen[0].x, x, 0.01);
         EXPECT_NEAR(seen[0].y, y, 0.01);
+    }
+}
+
+TEST(DepthPlyEnc, each_point_may_tell_how_uncertain_it_is)
+{
+    const Calibration calibration("0., 0., 0., 0., 0.");
+    const PixelAt deviation_at = [](unsigned x, unsigned) {
+        return static_cast<guint16>(x == 9 ? 0 : 30 + x);
+    };
+    const EncodedFile file =
+        encode_file("depthplyenc calibration=" + calibration.file, width, height,
+                    colour_frame(width, height, colour_at), depth_frame(width, height, depth_at), dioptres,
+                    {.uncertainty = depth_frame(width, height, deviation_at)});
+    ASSERT_EQ(file.error, "");
+    const std::vector<Point> points = read_ply(file.bytes);
+    ASSERT_EQ(points.size(), (width - 1) * (height - 1));
+    for (const Point &point : points) {
+        const unsigned x = point.colour[0];
+        const double metres = 5.0 / 65534 * (30 + x) * point.z * point.z; /* z is 1 / power */
+        if (x == 9)
+            EXPECT_TRUE(std::isnan(point.uncertainty));
+        else
+            EXPECT_NEAR(point.uncertainty, metres, 1e-4 * metres);
     }
 }
 

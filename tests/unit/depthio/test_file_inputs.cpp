@@ -54,8 +54,8 @@ public:
     void begin()
     {
         const std::string caps_text = name_ == "color"   ? "video/x-raw,format=RGB"
-                                      : name_ == "depth" ? "video/x-raw,format=GRAY16_LE"
-                                                         : "video/x-focal-stack,format=RGB,planes=3";
+                                      : name_ == "stack" ? "video/x-focal-stack,format=RGB,planes=3"
+                                                         : "video/x-raw,format=GRAY16_LE";
         g_autoptr(GstCaps) caps = gst_caps_from_string((caps_text + size).c_str());
         GstSegment segment;
         gst_segment_init(&segment, GST_FORMAT_TIME);
@@ -73,7 +73,7 @@ public:
 
     void push(unsigned k)
     {
-        const gsize bytes = name_ == "color" ? colour_bytes : name_ == "depth" ? depth_bytes : stack_bytes;
+        const gsize bytes = name_ == "color" ? colour_bytes : name_ == "stack" ? stack_bytes : depth_bytes;
         GstBuffer *buffer = gst_buffer_new_allocate(nullptr, bytes, nullptr);
         gst_buffer_memset(buffer, 0, 7, bytes);
         GST_BUFFER_PTS(buffer) = offset_ + k * period;
@@ -215,56 +215,88 @@ TEST(FileInputs, a_gap_before_the_segment_is_no_fault)
     }
 }
 
-TEST(FileInputs, a_stack_that_begins_late_or_ends_early_leaves_files_without_planes)
+namespace {
+
+/* An encoder and a pad that it may have or not. */
+struct Further {
+    std::string encoder;
+    const char *pad;
+};
+
+std::vector<Further> further_inputs()
 {
-    if (!has_exr())
-        GTEST_SKIP() << "depthexrenc is not built";
-    for (const std::vector<unsigned> &stacks : std::vector<std::vector<unsigned>>{
-             {}, {0, 1, 2, 3, 4, 5}, {2, 3, 4, 5}, {0, 1, 2}, {1, 4}, {2, 9}}) {
-        Encoder encoder("depthexrenc compression=none");
-        Input colour(encoder.element(), "color", 0);
-        Input depth(encoder.element(), "depth", 0);
-        Input stack(encoder.element(), "stack", 7 * GST_SECOND);
-        encoder.play();
-        colour.feed(up_to(6));
-        depth.feed(up_to(6));
-        stack.feed(stacks);
-        std::vector<bool> with_planes;
-        for (const gsize bytes : encoder.sizes())
-            with_planes.push_back(bytes > 2 * stack_bytes);
-        std::vector<bool> expected(6);
-        for (const unsigned k : stacks)
-            if (k < expected.size())
-                expected[k] = true;
-        EXPECT_EQ(encoder.error(), "");
-        EXPECT_EQ(with_planes, expected) << testing::PrintToString(stacks);
-    }
+    std::vector<Further> inputs;
+    for (const std::string &encoder : encoders())
+        inputs.push_back({encoder, "uncertainty"});
+    if (has_exr())
+        inputs.push_back({"depthexrenc compression=none", "stack"});
+    return inputs;
 }
 
-TEST(FileInputs, a_stack_pad_may_come_and_go_while_the_others_stream)
+gsize size_without_further_input(const std::string &kind)
 {
-    if (!has_exr())
-        GTEST_SKIP() << "depthexrenc is not built";
-    constexpr unsigned count = 400;
-    Encoder encoder("depthexrenc compression=none");
+    Encoder encoder(kind);
     Input colour(encoder.element(), "color", 0);
     Input depth(encoder.element(), "depth", 0);
     encoder.play();
-    colour.feed(up_to(count));
-    depth.feed(up_to(count));
-    std::mt19937 random(1);
-    for (unsigned k = 0; k < 100; k++) {
-        Input stack(encoder.element(), "stack", 0);
-        const unsigned steps = random() % 4;
-        if (steps > 0)
-            stack.begin();
-        if (steps > 1)
-            stack.push(static_cast<unsigned>(random() % count));
-        if (steps > 2)
-            stack.end();
-        g_usleep(random() % 1000);
-        stack.release(encoder.element());
+    colour.feed({0});
+    depth.feed({0});
+    return encoder.sizes().at(0);
+}
+
+} // namespace
+
+TEST(FileInputs, what_begins_late_or_ends_early_is_missing_in_the_other_files_alone)
+{
+    for (const Further &further : further_inputs())
+        for (const std::vector<unsigned> &frames : std::vector<std::vector<unsigned>>{
+                 {}, {0, 1, 2, 3, 4, 5}, {2, 3, 4, 5}, {0, 1, 2}, {1, 4}, {2, 9}}) {
+            const gsize without = size_without_further_input(further.encoder);
+            Encoder encoder(further.encoder);
+            Input colour(encoder.element(), "color", 0);
+            Input depth(encoder.element(), "depth", 0);
+            Input input(encoder.element(), further.pad, 7 * GST_SECOND);
+            encoder.play();
+            colour.feed(up_to(6));
+            depth.feed(up_to(6));
+            input.feed(frames);
+            std::vector<bool> with_it;
+            for (const gsize bytes : encoder.sizes())
+                with_it.push_back(bytes > without);
+            std::vector<bool> expected(6);
+            for (const unsigned k : frames)
+                if (k < expected.size())
+                    expected[k] = true;
+            EXPECT_EQ(encoder.error(), "");
+            EXPECT_EQ(with_it, expected)
+                << further.encoder << ' ' << further.pad << ' ' << testing::PrintToString(frames);
+        }
+}
+
+TEST(FileInputs, what_is_requested_may_come_and_go_while_the_others_stream)
+{
+    constexpr unsigned count = 400;
+    for (const Further &further : further_inputs()) {
+        Encoder encoder(further.encoder);
+        Input colour(encoder.element(), "color", 0);
+        Input depth(encoder.element(), "depth", 0);
+        encoder.play();
+        colour.feed(up_to(count));
+        depth.feed(up_to(count));
+        std::mt19937 random(1);
+        for (unsigned k = 0; k < 100; k++) {
+            Input input(encoder.element(), further.pad, 0);
+            const unsigned steps = random() % 4;
+            if (steps > 0)
+                input.begin();
+            if (steps > 1)
+                input.push(static_cast<unsigned>(random() % count));
+            if (steps > 2)
+                input.end();
+            g_usleep(random() % 1000);
+            input.release(encoder.element());
+        }
+        EXPECT_EQ(encoder.sizes().size(), count) << further.encoder << ' ' << further.pad;
+        EXPECT_EQ(encoder.error(), "");
     }
-    EXPECT_EQ(encoder.sizes().size(), count);
-    EXPECT_EQ(encoder.error(), "");
 }
