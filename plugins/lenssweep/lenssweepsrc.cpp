@@ -253,13 +253,17 @@ static gboolean set_caps(GstBaseSrc *source, GstCaps *caps)
     return TRUE;
 }
 
-static void post_nothing_fits(GstBaseSrc *source, GstCaps *possible)
+static void post_nothing_fits(GstBaseSrc *source, const GstCaps *possible)
 {
-    GST_ELEMENT_ERROR(
-        source, STREAM, FORMAT,
-        ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for "
-         "a frame rate of planes times rate; put a videoconvert behind this element for other formats."),
-        ("possible caps are %" GST_PTR_FORMAT, possible));
+    gint numerator = 0;
+    gint denominator = 1;
+    gst_structure_get_fraction(gst_caps_get_structure(possible, 0), "framerate", &numerator, &denominator);
+    GST_ELEMENT_ERROR(source, STREAM, FORMAT,
+                      ("Nothing downstream takes this camera's pictures. Ask for a size it has, and for a "
+                       "frame rate of %d/%d, which is planes times rate; put a videoconvert behind this "
+                       "element for other formats.",
+                       numerator, denominator),
+                      ("possible caps are %" GST_PTR_FORMAT, possible));
 }
 
 /* GstBaseSrc does not say what did not fit, and gives up where a capsfilter is set to other caps between its
