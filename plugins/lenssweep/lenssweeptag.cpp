@@ -26,8 +26,10 @@
  * moved at the label.
  *
  * With mode=sync the lens sweeps by itself, or in the hands of the FPGA (lens=fpga:/dev/i2c-1), and sync-line
- * has an edge whenever plane 0 is exposed. A frame is let through only if edges and frames agree on its
- * plane; the others are dropped and counted in stats. See timestamp-delay for cameras that stamp frames late.
+ * has an edge whenever plane 0 is exposed. An Optotune lens driver (lens=optotune:/dev/ttyACM0, and a profile
+ * in mA) moves its lens to and fro: its pin A on sync-line rises at the near end, and every second sweep goes
+ * from the farthest plane to the nearest. A frame is let through only if edges and frames agree on its plane;
+ * the others are dropped and counted in stats. See timestamp-delay for cameras that stamp frames late.
  *
  * Where the planes lie is said by near and far, or by powers, or by a lens that knows its powers and is moved
  * here. Otherwise it is not known, and depth can only be in plane numbers: no distance is invented.
@@ -182,9 +184,10 @@ static gboolean set_caps(GstBaseTransform *transform, GstCaps *caps, GstCaps *)
     try {
         self->state->tagger->set_period(frame_period(caps));
     } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
-                          ("The lens cannot sweep at the frame rate of this stream: %s.", error.what()),
-                          (nullptr));
+        GST_ELEMENT_ERROR(
+            self, RESOURCE, SETTINGS,
+            ("The lens cannot make this sweep at the frame rate of this stream: %s.", error.what()),
+            (nullptr));
         return FALSE;
     }
     return TRUE;

@@ -27,15 +27,16 @@ SweepTagger::SweepTagger(const TagSettings &settings, const FindProperty &find_p
       calibrated_powers_(calibrated_powers(settings.calibration, plan_.planes()))
 {
     auto lens =
-        dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile, nullptr, find_property});
+        dff::open_lens(dff::LensUri::parse(settings.lens), {settings.lens_profile, nullptr, find_property,
+                                                            settings.mode == GST_LENS_SWEEP_TAG_MODE_SYNC});
     if (settings.mode == GST_LENS_SWEEP_TAG_MODE_STEP) {
         open_step(std::move(lens));
     } else if (settings.mode == GST_LENS_SWEEP_TAG_MODE_SYNC) {
         open_sync(std::move(lens));
     } else {
-        if (dynamic_cast<dff::SteppedLens *>(lens.get()) || dynamic_cast<dff::SequencedLens *>(lens.get()))
+        if (dynamic_cast<dff::SteppedLens *>(lens.get()) || dynamic_cast<dff::SweptLens *>(lens.get()))
             throw std::invalid_argument("mode=cycle moves no lens; use mode=step with lens=" + settings.lens +
-                                        ", or mode=sync with lens=fpga:");
+                                        ", or mode=sync with lens=fpga: or optotune:");
         cycle_.emplace(plan_.planes(), std::nullopt);
     }
 }
@@ -55,13 +56,14 @@ void SweepTagger::open_step(std::unique_ptr<dff::Lens> lens)
 void SweepTagger::open_sync(std::unique_ptr<dff::Lens> lens)
 {
     if (dynamic_cast<dff::SteppedLens *>(lens.get()) || settings_.sync_line.empty())
-        throw std::invalid_argument("mode=sync needs sync-line, as gpiochip0:5, and lens=fpga: or none");
+        throw std::invalid_argument(
+            "mode=sync needs sync-line, as gpiochip0:5, and lens=fpga:, optotune: or none");
     auto line = dff::open_edge_line(settings_.sync_line);
-    std::unique_ptr<dff::SequencedLens> sequencer;
-    if (dynamic_cast<dff::SequencedLens *>(lens.get()))
-        sequencer.reset(dynamic_cast<dff::SequencedLens *>(lens.release()));
-    has_sequencer_ = sequencer != nullptr;
-    sync_ = std::make_unique<SyncTagger>(std::move(line), std::move(sequencer), plan_);
+    std::unique_ptr<dff::SweptLens> swept;
+    if (dynamic_cast<dff::SweptLens *>(lens.get()))
+        swept.reset(dynamic_cast<dff::SweptLens *>(lens.release()));
+    lens_sweeps_ = swept != nullptr;
+    sync_ = std::make_unique<SyncTagger>(std::move(line), std::move(swept), plan_);
 }
 
 void SweepTagger::set_period(std::optional<uint64_t> period_ns)
@@ -161,7 +163,7 @@ double SweepTagger::power(unsigned plane) const
 {
     if (!calibrated_powers_.empty())
         return calibrated_powers_.at(plane);
-    const bool lens_knows = step_ ? step_->calibrated() : has_sequencer_;
+    const bool lens_knows = step_ ? step_->calibrated() : lens_sweeps_;
     const bool known = lens_knows || (settings_.sweep.has_powers() && !step_);
     return known ? plan_.power(plane) : NAN;
 }

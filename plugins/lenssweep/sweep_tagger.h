@@ -22,8 +22,8 @@ public:
      * settings that cannot be used, dff::LensError and dff::LineError for devices. */
     SweepTagger(const TagSettings &settings, const FindProperty &find_property);
 
-    /* The time between two frames of the stream, if it is known. A sequencer of ours begins to sweep; throws
-     * std::invalid_argument if it cannot keep that time, and dff::LensError. */
+    /* The time between two frames of the stream, if it is known. A lens of ours that sweeps by itself begins
+     * to; throws std::invalid_argument if it cannot keep that time, and dff::LensError. */
     void set_period(std::optional<uint64_t> period_ns);
 
     /* After a flush. */
@@ -63,8 +63,8 @@ private:
     TagSettings settings_;
     dff::SweepPlan plan_;
     std::vector<double> calibrated_powers_; /* by a file; empty: there is none */
-    bool has_sequencer_ = false;
-    unsigned unlabelled_ = 0; /* frames in a row, as is the next one */
+    bool lens_sweeps_ = false;              /* it is one of ours that does */
+    unsigned unlabelled_ = 0;               /* frames in a row, as is the next one */
     unsigned untimed_ = 0;
     unsigned told_ = 0; /* causes */
 

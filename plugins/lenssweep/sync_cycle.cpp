@@ -26,10 +26,10 @@ void SyncCycle::add_edge(uint64_t time_ns)
         /* Edges may have been lost: so many sweeps lie between this one and the last. */
         const double sweeps = std::round(static_cast<double>(passed) / static_cast<double>(whole));
         const double off = std::abs(static_cast<double>(passed) - sweeps * static_cast<double>(whole));
-        const double slot = static_cast<double>(whole) / planes_;
+        const double slot = static_cast<double>(whole) / slots_;
         const bool in_step = sweeps >= 1 && off <= tolerance * slot;
         if (in_step && interval_ns_)
-            slot_ns = sweeps > 1 ? slot : static_cast<double>(passed) / planes_;
+            slot_ns = sweeps > 1 ? slot : static_cast<double>(passed) / slots_;
         if (!in_step)
             in_row_ = 0;
         if (!in_step || sweeps <= 1)
@@ -76,7 +76,16 @@ std::optional<PlaneLabel> SyncCycle::label(uint64_t time_ns)
     number_ = sweep->number;
     slot_ = slot;
     time_ns_ = time_ns;
-    if (void_ || slot >= planes_ || in_row_ < proof_frames)
+    if (void_ || slot >= slots_ || in_row_ < proof_frames)
         return std::nullopt;
-    return PlaneLabel{sweep->number, static_cast<unsigned>(slot)};
+    return label_of(sweep->number, slot);
+}
+
+PlaneLabel SyncCycle::label_of(uint64_t number, uint64_t slot) const
+{
+    if (slots_ == planes_)
+        return {number, static_cast<unsigned>(slot)};
+    if (slot < planes_)
+        return {2 * number, static_cast<unsigned>(slot)};
+    return {2 * number + 1, static_cast<unsigned>(slots_ - 1 - slot)};
 }

@@ -8,13 +8,17 @@
 #include <deque>
 #include <optional>
 
-/* Labels frames of a lens that sweeps by itself and gives an edge as plane 0 of each sweep is exposed. A
+/* Labels frames of a lens that sweeps by itself and gives an edge as plane 0 of each sweep is exposed; if it
+ * goes to and fro, of each second sweep, which the other one follows with its planes in turn from the last. A
  * frame is labelled only if edges and frames agree: the edges are evenly spaced, the frame lies within a
  * quarter of a slot (a sweep by its planes) of its place, and frames have been seen to follow each other from
  * slot to slot. What does not fit is not labelled, and neither is the rest of its sweep. */
 class SyncCycle {
 public:
-    explicit SyncCycle(unsigned planes) : planes_(planes) {}
+    explicit SyncCycle(unsigned planes, bool to_and_fro = false)
+        : planes_(planes), slots_(to_and_fro ? 2 * planes : planes)
+    {
+    }
 
     /* The next edge, in order of time; times of one clock. */
     void add_edge(uint64_t time_ns);
@@ -35,7 +39,10 @@ private:
 
     std::optional<Sweep> sweep_at(uint64_t time_ns) const;
 
+    PlaneLabel label_of(uint64_t number, uint64_t slot) const;
+
     unsigned planes_;
+    unsigned slots_; /* from edge to edge */
     uint64_t edges_ = 0;
     std::deque<Sweep> sweeps_;            /* the last few */
     std::optional<uint64_t> interval_ns_; /* between edges, as two in a row had it */

@@ -2,19 +2,20 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "sync_tagger.h"
 
-SyncTagger::SyncTagger(std::unique_ptr<dff::EdgeLine> line, std::unique_ptr<dff::SequencedLens> sequencer,
+SyncTagger::SyncTagger(std::unique_ptr<dff::EdgeLine> line, std::unique_ptr<dff::SweptLens> lens,
                        const dff::SweepPlan &plan)
-    : line_(std::move(line)), sequencer_(std::move(sequencer)), plan_(plan), cycle_(plan.planes())
+    : line_(std::move(line)), lens_(std::move(lens)), plan_(plan),
+      cycle_(plan.planes(), lens_ && lens_->goes_to_and_fro())
 {
 }
 
 void SyncTagger::begin(std::chrono::microseconds period)
 {
-    if (!sequencer_)
+    if (!lens_)
         return;
-    sequencer_->stop();
-    sequencer_->prepare({plan_, period});
-    sequencer_->start();
+    lens_->stop();
+    lens_->prepare({plan_, period});
+    lens_->start();
 }
 
 std::optional<PlaneLabel> SyncTagger::label(std::optional<uint64_t> time_ns)
@@ -24,8 +25,8 @@ std::optional<PlaneLabel> SyncTagger::label(std::optional<uint64_t> time_ns)
         cycle_.add_edge(edge->time_ns);
         edges_++;
     }
-    if (sequencer_ && ++unchecked_ >= plan_.planes()) {
-        sequencer_->check();
+    if (lens_ && ++unchecked_ >= plan_.planes()) {
+        lens_->check();
         unchecked_ = 0;
     }
     return time_ns ? cycle_.label(*time_ns) : std::nullopt;

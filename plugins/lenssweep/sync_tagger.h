@@ -10,30 +10,30 @@
 #include <memory>
 #include <optional>
 
-/* Labels frames by the edges of a sync line, and watches over the sequencer, if it is ours. */
+/* Labels frames by the edges of a sync line, and watches over the lens that sweeps, if it is ours. */
 class SyncTagger {
 public:
-    /* `sequencer` may be null: then somebody else runs the sweep. */
-    SyncTagger(std::unique_ptr<dff::EdgeLine> line, std::unique_ptr<dff::SequencedLens> sequencer,
+    /* `lens` may be null: then somebody else runs the sweep. */
+    SyncTagger(std::unique_ptr<dff::EdgeLine> line, std::unique_ptr<dff::SweptLens> lens,
                const dff::SweepPlan &plan);
 
-    /* The time between two frames is known: the sequencer begins to sweep. Throws dff::LensError and
+    /* The time between two frames is known: the lens begins to sweep. Throws dff::LensError and
      * std::invalid_argument. */
     void begin(std::chrono::microseconds period);
 
     /* The label of a frame whose exposure began then, CLOCK_MONOTONIC, or nothing if that is not sure. Throws
-     * dff::LineError, and dff::LensError when the sequencer has stopped by itself. */
+     * dff::LineError, and dff::LensError when the lens has stopped by itself. */
     std::optional<PlaneLabel> label(std::optional<uint64_t> time_ns);
 
-    int code(unsigned plane) const { return sequencer_ ? sequencer_->code(plane) : -1; }
+    int code(unsigned plane) const { return lens_ ? lens_->code(plane) : -1; }
     uint64_t edges() const { return edges_; }
     std::optional<int64_t> misfit_ns() const { return cycle_.misfit_ns(); }
 
 private:
     std::unique_ptr<dff::EdgeLine> line_;
-    std::unique_ptr<dff::SequencedLens> sequencer_;
+    std::unique_ptr<dff::SweptLens> lens_;
     dff::SweepPlan plan_;
     SyncCycle cycle_;
     uint64_t edges_ = 0;
-    unsigned unchecked_ = 0; /* frames since the sequencer was looked at */
+    unsigned unchecked_ = 0; /* frames since the lens was looked at */
 };

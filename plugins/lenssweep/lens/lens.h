@@ -21,8 +21,8 @@ struct LensSweep {
     bool gated = false;                   /* a sequencer sweeps only while its run line is high */
 };
 
-/* A lens that is swept: a SequencedLens, which sweeps by itself and triggers the camera, a SteppedLens, which
- * is moved from plane to plane, or neither, if nobody here moves it.
+/* A lens that is swept: a SweptLens, which sweeps by itself, a SteppedLens, which is moved from plane to
+ * plane, or neither, if nobody here moves it.
  *
  * The order of calls is prepare(), start(), moves, stop(), as often as wanted. Transfers that fail are tried
  * again a few times; then the lens is left in its safe state and LensError is thrown. Not thread safe, but
@@ -74,12 +74,20 @@ public:
     virtual bool knows_rest() const { return true; }
 };
 
-/* A lens in the hands of a sequencer, which triggers the camera and numbers sweeps. */
-class SequencedLens : public Lens {
+/* A lens that sweeps by itself, and gives an edge as it stands at the near end. */
+class SweptLens : public Lens {
 public:
-    /* Throws LensError, with the reason, if the sequencer has stopped by itself. */
+    /* Throws LensError, with the reason, if it has stopped by itself. */
     virtual void check() = 0;
 
+    /* Whether it comes back as it went, plane by plane, so that from edge to edge there are two sweeps; if
+     * not, it begins with plane 0 again. */
+    virtual bool goes_to_and_fro() const { return false; }
+};
+
+/* A lens in the hands of a sequencer, which triggers the camera and numbers sweeps. */
+class SequencedLens : public SweptLens {
+public:
     /* Sweeps begun since the sequencer's reset: one for each pulse of the sync line. A count that cannot be
      * read throws LensError, and the sweep goes on. */
     virtual std::uint32_t sweep_count() = 0;

@@ -9,6 +9,7 @@
 #include "linux_i2c_bus.h"
 #include "max14574_lens.h"
 #include "optotune_lens.h"
+#include "optotune_triangle.h"
 #include "v4l2_lens.h"
 
 #include <cstdlib>
@@ -67,6 +68,8 @@ static std::unique_ptr<Lens> open_kind(const LensUri &uri, const LensSurrounding
     case LensKind::V4l2:
         return std::make_unique<V4l2Lens>(uri.device, load_points(surroundings));
     case LensKind::Optotune:
+        if (surroundings.by_itself)
+            return std::make_unique<OptotuneTriangle>(uri.device, load_points(surroundings));
         return std::make_unique<OptotuneLens>(uri.device, load_points(surroundings));
     case LensKind::Element:
         if (!surroundings.find_property)

@@ -23,10 +23,12 @@ struct LensSurroundings {
     /* For element: the property of the element with this name; throws LensError if there is none. */
     std::function<std::unique_ptr<LensProperty>(const std::string &element, const std::string &property)>
         find_property = {};
+
+    bool by_itself = false; /* it is to sweep by itself, if it can do both */
 };
 
-/* Opens a lens; what comes is a SequencedLens (fpga), a Lens that nobody moves (none), or else a
- * SteppedLens. Throws LensError if the device is missing or something else,
+/* Opens a lens; what comes is a SequencedLens (fpga), another SweptLens (optotune by itself), a Lens that
+ * nobody moves (none), or else a SteppedLens. Throws LensError if the device is missing or something else,
  * std::invalid_argument for a profile that cannot be used, or given for a lens that has none. */
 std::unique_ptr<Lens> open_lens(const LensUri &uri, const LensSurroundings &surroundings);
 

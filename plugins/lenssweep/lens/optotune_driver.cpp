@@ -2,7 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optotune_driver.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string_view>
 
 namespace dff {
@@ -20,6 +22,16 @@ constexpr double codes_a_dioptre = 200.0;
 constexpr double type_a_offset = 5.0;
 constexpr double current_codes = 4095.0;
 constexpr double degrees_a_code = 0.0625;
+
+/* By the data sheets of EL-10-30 and EL-16-40, degrees Celsius. */
+constexpr double hottest = 65.0;
+
+/* Of the byte of errors that MwCA and PwTA answer with: no limits of temperature were set. */
+constexpr std::uint8_t no_limits = 1U << 2;
+/* Degrees Celsius between which a focal power can be held: those of the example in the maker's table. */
+constexpr double usual_coldest = 20.0;
+constexpr double usual_hottest = 45.0;
+constexpr double margin = 5.0;
 
 Bytes bytes_of(std::string_view text)
 {
@@ -47,11 +59,11 @@ Bytes with_checksum(Bytes bytes)
 }
 
 /* Whether these are so many bytes with their checksum and an end of line. */
-bool is_answer(const Bytes &bytes, std::size_t size)
+bool is_answer(std::span<const std::uint8_t> bytes, std::size_t size)
 {
     if (bytes.size() != size + 4 || bytes[size + 2] != '\r' || bytes[size + 3] != '\n')
         return false;
-    const std::uint16_t crc = crc16_ibm(std::span(bytes).first(size));
+    const std::uint16_t crc = crc16_ibm(bytes.first(size));
     return bytes[size] == (crc & 0xff) && bytes[size + 1] == crc >> 8;
 }
 
@@ -124,7 +136,11 @@ double OptotuneDriver::focal_power_of(std::int16_t code) const
 
 OptotuneDriver::Range OptotuneDriver::enter_focal_power_mode()
 {
-    const Bytes answer = ask(bytes_of("MwCA"), 8);
+    Bytes answer = ask(bytes_of("MwCA"), 8);
+    if (answer.at(3) & no_limits) {
+        set_temperature_limits();
+        answer = ask(bytes_of("MwCA"), 8);
+    }
     if (answer.at(3) != 0)
         throw LensError(
             "the Optotune Lens Driver on " + port_.device() +
@@ -173,9 +189,91 @@ void OptotuneDriver::set_current(double milliamperes)
                     " does not take a current: does another program drive it?");
 }
 
+/* A driver that was just plugged in has none, and holds no focal power then. The wider they are, the less of
+ * its range can be held at all of them. */
+void OptotuneDriver::set_temperature_limits()
+{
+    const double now = temperature();
+    Bytes command = bytes_of("PwTA");
+    append(command,
+           static_cast<std::int16_t>(std::lround(std::max(usual_hottest, now + margin) / degrees_a_code)));
+    append(command,
+           static_cast<std::int16_t>(std::lround(std::min(usual_coldest, now - margin) / degrees_a_code)));
+    ask(command, 7);
+}
+
+/* One of the signal's "U"pper and "L"ower currents and its "F"requency. */
+void OptotuneDriver::set_signal(char property, std::uint32_t data, unsigned size)
+{
+    Bytes command = {'P', 'w', static_cast<std::uint8_t>(property), 'A'};
+    append(command, static_cast<std::int16_t>(data >> (size == 4 ? 16 : 0)));
+    append(command, static_cast<std::int16_t>(size == 4 ? data & 0xffff : 0));
+    for (int attempt = 0; attempt < tries; ++attempt) {
+        port_.write(with_checksum(command));
+        if (signal(property, size) == data)
+            return;
+    }
+    throw LensError("the Optotune Lens Driver on " + port_.device() +
+                    " does not tell that it has taken the triangle that it was given: use mode=step");
+}
+
+/* Programs that speak to it read "MPAU" and then the number (ramzes3/Optotune-ETL-control-in-matlab), or
+ * three letters and then the number (opto), and the maker's table has two or four bytes of it: kinds of
+ * firmware differ. */
+std::optional<std::uint32_t> OptotuneDriver::signal(char property, unsigned size)
+{
+    constexpr std::size_t around = 4; /* checksum and end of line */
+    constexpr std::size_t longest = 4 + 4 + around;
+    port_.forget_input();
+    port_.write(with_checksum({'P', 'r', static_cast<std::uint8_t>(property), 'A', 0, 0, 0, 0}));
+    Bytes answer = port_.read(3 + size + around, patience);
+    while (!is_answer(answer, std::max(answer.size(), around) - around)) {
+        const Bytes more = answer.size() < longest ? port_.read(1, patience) : Bytes{};
+        if (more.empty())
+            return std::nullopt;
+        answer.push_back(more.front());
+    }
+    const std::size_t begin = answer.front() == 'M' ? 4 : 3;
+    const auto letters = std::span(answer).first(begin);
+    if (std::find(letters.begin(), letters.end(), property) == letters.end() ||
+        begin + size + around > answer.size())
+        return std::nullopt;
+    std::uint32_t number = 0;
+    for (std::size_t place = begin; place < begin + size; ++place)
+        number = number << 8 | answer[place];
+    return number;
+}
+
+/* The signal's properties can be set in its mode only. */
+void OptotuneDriver::start_triangle(double lower_milliamperes, double upper_milliamperes, double hertz)
+{
+    ask(bytes_of("MwTA"), 3);
+    set_signal('L', static_cast<std::uint16_t>(current_code(lower_milliamperes)), 2);
+    set_signal('U', static_cast<std::uint16_t>(current_code(upper_milliamperes)), 2);
+    set_signal('F', static_cast<std::uint32_t>(std::lround(1000 * hertz)), 4);
+}
+
+void OptotuneDriver::rest()
+{
+    enter_current_mode();
+    set_current(0);
+}
+
 double OptotuneDriver::temperature()
 {
     return number_at(ask(bytes_of("TCA"), 5), 3) * degrees_a_code;
+}
+
+void OptotuneDriver::check_temperature()
+{
+    const double degrees = temperature();
+    if (degrees <= hottest)
+        return;
+    rest();
+    std::ostringstream text;
+    text << "the Optotune lens has " << degrees << " degrees Celsius, and " << hottest
+         << " are the most it is made for: let it cool down, and use smaller powers";
+    throw LensError(text.str());
 }
 
 } // namespace dff

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,9 +17,10 @@ namespace dff {
 std::uint16_t crc16_ibm(std::span<const std::uint8_t> bytes);
 
 /* The Lens Driver 4 and 4i of Optotune, by its serial protocol: text "Start" is answered "Ready"; a command
- * of letters, numbers of 16 bits with the high byte first, and a checksum is answered likewise, with an end
- * of line. The facts are those of the maker's Lens Driver 4 manual (of 2014, 15 to 17, and of 2019) and of
- * free programs that speak it: OrganicIrradiation/opto, elhananby/optotune-lens and
+ * of letters, numbers with the high byte first, and a checksum is answered likewise, with an end of line. The
+ * facts are those of the maker's Lens Driver 4 manual (of 2014, 2016 and 2019), of the maker's table of
+ * commands (both are kept in ramzes3/Optotune-ETL-control-in-matlab on GitHub) and of free programs that
+ * speak it: OrganicIrradiation/opto, elhananby/optotune-lens, funalab/LensDriver and
  * uedatatsu/OptotuneLensDriver4i_Controller on GitHub.
  *
  * Commands that are not answered ("Aw", "PwDA" among them) are followed by a question that is, so that what
@@ -48,14 +50,27 @@ public:
     void enter_current_mode();
     void set_current(double milliamperes);
 
-    /* Of the lens, in degrees Celsius. */
-    double temperature();
+    /* From now on the current goes to and fro between these, on straight lines, so often a second. While it
+     * does, pin A of the driver is high from the upper turn to the lower one (manual of 2016, section 4.7).
+     */
+    void start_triangle(double lower_milliamperes, double upper_milliamperes, double hertz);
+    static constexpr Range triangle_hertz{0.2, 2000.0};
+
+    /* Without current. */
+    void rest();
+
+    /* Throws LensError, and leaves the lens at rest, if it is hotter than its kind is made for. */
+    void check_temperature();
 
 private:
     using Bytes = std::vector<std::uint8_t>;
 
     void greet();
     Bytes ask(const Bytes &question, std::size_t answer_size);
+    void set_temperature_limits();
+    double temperature();
+    void set_signal(char property, std::uint32_t data, unsigned size);
+    std::optional<std::uint32_t> signal(char property, unsigned size);
     double focal_power_of(std::int16_t code) const;
 
     SerialPort port_;

@@ -12,10 +12,8 @@ namespace dff {
 
 namespace {
 
-/* By the data sheets of EL-10-30 and EL-16-40 a step has settled after 15 and 25 ms, and lenses are made for
- * up to 65 degrees Celsius. */
+/* By the data sheets of EL-10-30 and EL-16-40 a step has settled after 15 and 25 ms. */
 constexpr std::chrono::milliseconds settle_time{25};
-constexpr double hottest = 65.0;
 
 bool is_by_current(const std::optional<FocusPoints> &points)
 {
@@ -73,8 +71,7 @@ void OptotuneLens::prepare(const LensSweep &sweep)
 
 void OptotuneLens::stop()
 {
-    driver_.enter_current_mode();
-    driver_.set_current(0);
+    driver_.rest();
 }
 
 int OptotuneLens::code(unsigned plane) const
@@ -83,22 +80,10 @@ int OptotuneLens::code(unsigned plane) const
     return by_current_ ? driver_.current_code(position) : driver_.focal_power_code(position);
 }
 
-void OptotuneLens::check_temperature()
-{
-    const double degrees = driver_.temperature();
-    if (degrees <= hottest)
-        return;
-    stop();
-    std::ostringstream text;
-    text << "the Optotune lens has " << degrees << " degrees Celsius, and " << hottest
-         << " are the most it is made for: let it cool down, and use smaller powers";
-    throw LensError(text.str());
-}
-
 void OptotuneLens::move_to(unsigned plane)
 {
     if (plane == 0)
-        check_temperature();
+        driver_.check_temperature();
     if (by_current_)
         driver_.set_current(positions_.at(plane));
     else

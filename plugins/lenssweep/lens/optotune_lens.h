@@ -36,7 +36,6 @@ public:
 
 private:
     OptotuneDriver::Range enter_mode();
-    void check_temperature();
 
     OptotuneDriver driver_;
     std::optional<FocusPoints> points_;

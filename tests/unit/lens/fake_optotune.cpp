@@ -47,9 +47,11 @@ std::string checked(std::string bytes)
 }
 
 /* Lengths of commands by how they begin, without checksum. */
-const std::map<std::string, size_t> lengths = {{"H", 1},    {"CrMA", 6}, {"MwCA", 4},
-                                               {"MwDA", 4}, {"PwDA", 8}, {"PrDA", 8},
-                                               {"Aw", 4},   {"Ar", 4},   {"TCA", 3}};
+const std::map<std::string, size_t> lengths = {
+    {"H", 1},    {"CrMA", 6}, {"MwCA", 4}, {"MwDA", 4}, {"PwDA", 8}, {"PrDA", 8},
+    {"Aw", 4},   {"Ar", 4},   {"TCA", 3},  {"MwTA", 4}, {"PwTA", 8}, {"PwLA", 8},
+    {"PwUA", 8}, {"PwFA", 8}, {"PrLA", 8}, {"PrUA", 8}, {"PrFA", 8}};
+constexpr int no_limits = 4; /* bit 2 of the byte of errors */
 
 int number_at(const std::string &text, size_t place)
 {
@@ -115,6 +117,29 @@ void FakeOptotune::refuse_focal_power()
 {
     const std::lock_guard lock(mutex_);
     refuses_ = true;
+}
+
+void FakeOptotune::forget_temperature_limits()
+{
+    const std::lock_guard lock(mutex_);
+    knows_limits_ = false;
+}
+
+void FakeOptotune::answer_with_three_letters()
+{
+    const std::lock_guard lock(mutex_);
+    three_letters_ = true;
+}
+
+std::optional<FakeOptotune::Triangle> FakeOptotune::triangle()
+{
+    const std::lock_guard lock(mutex_);
+    if (mode_ != 'T' || signal_.size() < 3)
+        return std::nullopt;
+    const auto current = [](std::uint32_t code) {
+        return static_cast<std::int16_t>(code) * greatest_current / 4095;
+    };
+    return Triangle{current(signal_['L']), current(signal_['U']), signal_['F'] / 1000.0, signal_since_ns_};
 }
 
 std::vector<std::string> FakeOptotune::moves()
@@ -186,13 +211,14 @@ void FakeOptotune::do_command(const std::string &command)
         return static_cast<int>(std::lround((power + offset) * 200));
     };
     if (command == "H")
-        answer({'H', firmware_type_});
+        answer("H", {firmware_type_});
     else if (command.starts_with("CrMA"))
-        answer("CMA" + bytes_of(static_cast<int>(greatest_current * 100)));
+        answer("CMA", bytes_of(static_cast<int>(greatest_current * 100)));
     else if (command == "MwCA") {
-        mode_ = refuses_ ? mode_ : 'C';
-        answer("MCA" + std::string(1, static_cast<char>(refuses_ ? 1 : 0)) +
-               bytes_of(code_of(greatest_power)) + bytes_of(code_of(least_power)));
+        const int errors = (refuses_ ? 1 : 0) | (knows_limits_ ? 0 : no_limits);
+        mode_ = errors ? mode_ : 'C';
+        answer("MCA", std::string(1, static_cast<char>(errors)) + bytes_of(code_of(greatest_power)) +
+                          bytes_of(code_of(least_power)));
     } else if (command == "MwDA") {
         mode_ = 'D';
         answer("MDA");
@@ -200,19 +226,46 @@ void FakeOptotune::do_command(const std::string &command)
         focal_power_code_ = number_at(command, 4);
         note(focal_power_code_ / 200.0 - offset, "D");
     } else if (command.starts_with("PrDA"))
-        answer("PD" + bytes_of(focal_power_code_));
+        answer("PD", bytes_of(focal_power_code_));
     else if (command.starts_with("Aw") && mode_ == 'D') {
         current_code_ = number_at(command, 2);
         note(current_code_ * greatest_current / 4095, "mA");
     } else if (command.starts_with("Ar"))
-        answer("A" + bytes_of(current_code_));
+        answer("A", bytes_of(current_code_));
     else if (command == "TCA")
-        answer("TCA" + bytes_of(static_cast<int>(std::lround(temperature_ / 0.0625))));
+        answer("TCA", bytes_of(static_cast<int>(std::lround(temperature_ / 0.0625))));
+    else
+        do_signal_command(command);
 }
 
-void FakeOptotune::answer(const std::string &text)
+void FakeOptotune::do_signal_command(const std::string &command)
 {
-    send(checked(text) + "\r\n");
+    const char letter = command.at(2);
+    if (command == "MwTA") {
+        mode_ = 'T';
+        answer("MTA");
+    } else if (command.starts_with("PwTA")) {
+        knows_limits_ = number_at(command, 4) > number_at(command, 6);
+        answer("PT", std::string(5, '\0'));
+    } else if (command.starts_with("Pw") && mode_ == 'T') {
+        signal_[letter] = static_cast<std::uint16_t>(number_at(command, 4));
+        if (letter == 'F')
+            signal_[letter] = signal_[letter] << 16 | static_cast<std::uint16_t>(number_at(command, 6));
+        signal_since_ns_ = static_cast<std::uint64_t>(
+            std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count());
+    } else if (command.starts_with("Pr")) {
+        const std::string low = bytes_of(static_cast<int>(signal_[letter] & 0xffff));
+        const std::string high = bytes_of(static_cast<int>(signal_[letter] >> 16));
+        std::string begin = three_letters_ ? "P_A" : "MPA_";
+        begin[begin.find('_')] = letter;
+        const std::string unused = three_letters_ ? std::string(2, '\0') : "";
+        answer(begin, (letter == 'F' ? high + low : low + unused));
+    }
+}
+
+void FakeOptotune::answer(std::string letters, const std::string &data)
+{
+    send(checked(letters.append(data)).append("\r\n"));
 }
 
 void FakeOptotune::send(const std::string &bytes)

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,6 +34,24 @@ public:
     /* Focal powers cannot be held: the lens has no memory, or is too hot. */
     void refuse_focal_power();
 
+    /* As one that was just plugged in: no focal power is held before it is told between which temperatures.
+     */
+    void forget_temperature_limits();
+
+    /* Currents and frequency of its signal are told in an answer with three letters, as some firmware does.
+     */
+    void answer_with_three_letters();
+
+    /* The current going to and fro, on straight lines; at `since_ns` (CLOCK_MONOTONIC) it was half way up. */
+    struct Triangle {
+        double lower; /* mA */
+        double upper;
+        double hertz;
+        std::uint64_t since_ns;
+    };
+    /* Nothing but in that mode, and once it was told all of them. */
+    std::optional<Triangle> triangle();
+
     /* The port is gone, for good. */
     void unplug();
 
@@ -45,9 +65,10 @@ private:
     void serve(const std::stop_token &stop);
     bool take_command();
     void do_command(const std::string &command);
-    void answer(const std::string &text);
+    void answer(std::string letters, const std::string &data = {});
     void send(const std::string &bytes);
     void note(double value, const char *unit);
+    void do_signal_command(const std::string &command);
 
     std::mutex mutex_;
     std::string device_;
@@ -65,5 +86,9 @@ private:
     char mode_ = 'D';
     int focal_power_code_ = 0;
     int current_code_ = 0;
+    bool knows_limits_ = true;
+    bool three_letters_ = false;
+    std::map<char, std::uint32_t> signal_; /* by letter: 'L', 'U', 'F' */
+    std::uint64_t signal_since_ns_ = 0;
     std::jthread server_;
 };

@@ -234,3 +234,13 @@ TEST(OptotuneLens, two_hundred_starts_leave_no_file_open)
     EXPECT_EQ(open_files(), before);
     EXPECT_EQ(driver.faults(), 0U);
 }
+
+TEST(OptotuneLens, a_driver_that_knows_no_temperature_limits_is_given_some)
+{
+    FakeOptotune driver;
+    driver.forget_temperature_limits();
+    dff::OptotuneLens lens(driver.device(), {});
+    lens.prepare(sweep(3, 3.0, 0.0));
+    move_through(lens, 3);
+    EXPECT_EQ(driver.moves().back(), "0 D");
+}

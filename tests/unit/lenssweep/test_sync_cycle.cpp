@@ -65,6 +65,25 @@ TEST(SyncCycle, another_number_of_planes_is_not_labelled_as_if_it_were_right)
     EXPECT_EQ(labels_of(8, 4, 0).find_first_of("123"), std::string::npos);
 }
 
+TEST(SyncCycle, a_lens_that_goes_to_and_fro_has_two_sweeps_from_edge_to_edge)
+{
+    SyncCycle cycle(3, true);
+    std::string planes;
+    std::string sweeps;
+    for (unsigned period = 0; period < 8; ++period) {
+        cycle.add_edge(origin + period * 6 * slot);
+        for (unsigned frame = 0; frame < 6; ++frame) {
+            const auto label = cycle.label(origin + (period * 6 + frame) * slot);
+            if (period < 6)
+                continue;
+            planes += text(label);
+            sweeps += label ? std::to_string(label->sweep) + " " : "-";
+        }
+    }
+    EXPECT_EQ(planes, "012210012210");
+    EXPECT_EQ(sweeps, "12 12 12 13 13 13 14 14 14 15 15 15 ");
+}
+
 TEST(SyncCycle, before_the_period_is_known_nothing_is_labelled)
 {
     SyncCycle cycle(2);
