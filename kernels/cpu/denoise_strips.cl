@@ -14,9 +14,13 @@
 #include "lanes32.cl"
 
 #define BRIGHTNESSES 256
+#define SHARES(count) ((count) + 16) /* room for those of a row of tiles, which are read eight at once */
 #define AHEAD 192 /* samples that are asked for early */
 #define NEW_SCENE ((short)-1) /* a part: the mean begins anew with this sample */
 #define HELD ((short)-2)      /* a part: the mean stays, and the sample too */
+
+typedef short8 __attribute__((aligned(2))) short8u;
+typedef short4 __attribute__((aligned(2))) short4u;
 
 /* One component of one plane. */
 typedef struct {
@@ -59,119 +63,248 @@ INLINE short32 load_samples(__global const uchar *samples)
     return __builtin_convertvector(*(__global const bytes32 *)samples, short32) << (short)7;
 }
 
-/* out[tile] of one row of tiles, as tiles[] of stack_denoise.cl. */
+/* Of pairs of columns, or of more of them: of sample - mean its sum and square, and of the mean. */
+typedef struct {
+    int16 sum, light;
+    float16 square;
+} Sums;
+
+/* What 16 tiles tell: of sample - mean the mean and the mean square, and the mean of the mean. */
+typedef struct {
+    float16 mean, square, light;
+} Tiles;
+
+#define PAIRS(a, b)                                                                                                    \
+    (__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30) +                        \
+     __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31))
+
+/* Neighbours added up: a's lanes first. */
+INLINE Sums joined(Sums a, Sums b)
+{
+    return (Sums){PAIRS(a.sum, b.sum), PAIRS(a.light, b.light), PAIRS(a.square, b.square)};
+}
+
+/* Of 32 columns from x on. */
+INLINE Sums sums_of_32(Part part, const int rows, int y0, int x)
+{
+    short32 sum = 0, light = 0;
+    int16 square = 0;
+    for (int y = y0; y < y0 + rows; y++) {
+        __global const short *means = part.means + (long)y * part.width + x;
+        __global const uchar *samples = part.samples + (ulong)y * part.stride + x;
+        PREFETCH(means + AHEAD);
+        PREFETCH(samples + AHEAD);
+        const short32 mean = *(__global const slanes32 *)means, sample = load_samples(samples);
+        const short32 difference = (sample - mean + (short)4) >> (short)3;
+        sum += difference;
+        square += product_of_pairs(difference, difference);
+        light += mean >> (short)3;
+    }
+    return (Sums){product_of_pairs(sum, (short32)1), product_of_pairs(light, (short32)1), convert_float16(square)};
+}
+
+INLINE Sums sums_of_64(Part part, const int rows, int y0, int x)
+{
+    return joined(sums_of_32(part, rows, y0, x), sums_of_32(part, rows, y0, x + 32));
+}
+
+INLINE Sums sums_of_128(Part part, const int rows, int y0, int x)
+{
+    return joined(sums_of_64(part, rows, y0, x), sums_of_64(part, rows, y0, x + 64));
+}
+
+INLINE Sums sums_of_512(Part part, const int rows, int y0, int x)
+{
+    return joined(joined(sums_of_128(part, rows, y0, x), sums_of_128(part, rows, y0, x + 128)),
+                  joined(sums_of_128(part, rows, y0, x + 256), sums_of_128(part, rows, y0, x + 384)));
+}
+
+/* Of 16 tiles of 24 samples, which is no power of two. */
+INLINE Sums sums_of_384(Part part, const int rows, int y0, int x)
+{
+    int sums[192], lights[192]; /* of pairs of columns */
+    float squares[192];
+    for (int v = 0; v < 12; v++) {
+        const Sums pairs = sums_of_32(part, rows, y0, x + 32 * v);
+        for (int i = 0; i < 16; i++) {
+            sums[16 * v + i] = pairs.sum[i];
+            lights[16 * v + i] = pairs.light[i];
+            squares[16 * v + i] = pairs.square[i];
+        }
+    }
+    Sums all = {0, 0, 0.0f};
+    for (int t = 0; t < 16; t++)
+        for (int i = 12 * t; i < 12 * t + 12; i++) {
+            all.sum[t] += sums[i];
+            all.light[t] += lights[i];
+            all.square[t] += squares[i];
+        }
+    return all;
+}
+
+/* 16 whole tiles from sample x on, TILES_A_TIME. */
+INLINE Tiles measure_tiles(Part part, const int tile, const int rows, int y0, int x)
+{
+    const Sums sums = tile == 4    ? sums_of_64(part, rows, y0, x)
+                      : tile == 8  ? sums_of_128(part, rows, y0, x)
+                      : tile == 24 ? sums_of_384(part, rows, y0, x)
+                                   : sums_of_512(part, rows, y0, x);
+    const float unit = 1.0f / (16.0f * tile * rows);
+    return (Tiles){convert_float16(sums.sum) * unit, sums.square * (unit / 16.0f), convert_float16(sums.light) * unit};
+}
+
+/* One tile: mean, square and light. */
+INLINE float4 measure_tile(Part part, const int tile, const int rows, int y0, int x0)
+{
+    float sum = 0.0f, square = 0.0f, light = 0.0f;
+    for (int y = y0; y < y0 + rows; y++)
+        for (int x = x0; x < x0 + tile; x++) {
+            const float mean = part.means[(long)y * part.width + x] / 128.0f;
+            const float difference = part.samples[(ulong)y * part.stride + x] - mean;
+            sum += difference;
+            square += difference * difference;
+            light += mean;
+        }
+    return (float4)(sum, square, light, 0.0f) / (float)(tile * rows);
+}
+
+/* A row of tiles: 16 at a time, the last of which may be among those before, as far as they are whole; then one by one. */
+#define FOR_WHOLE_TILES(tx, whole)                                                                                     \
+    for (int tx = 0; whole >= 16 && tx < whole; tx = tx + 16 < whole ? min(tx + 16, whole - 16) : whole)
+#define FOR_OTHER_TILES(tx, whole, count) for (int tx = whole >= 16 ? whole : 0; tx < count; tx++)
+
+/* out[tile], as tiles[] of stack_denoise.cl. */
 INLINE void measure_row(Part part, const int tile, const int rows, int ty, int count, __global float4 *out)
 {
-    const int y0 = min(ty * rows, part.height - rows);
-    const int block = tile == 24 ? 96 : 32; /* whole vectors and whole tiles */
-    const int whole = part.width / block;
-    const float n = tile * rows;
-    for (int b = 0; b < whole; b++) {
-        int sums[48], squares[48], lights[48]; /* of pairs of columns */
-        for (int v = 0; v < block / 32; v++) {
-            short32 sum = 0, light = 0;
-            int16 square = 0;
-            for (int y = 0; y < rows; y++) {
-                const int x = b * block + 32 * v;
-                __global const short *means = part.means + (long)(y0 + y) * part.width + x;
-                __global const uchar *samples = part.samples + (ulong)(y0 + y) * part.stride + x;
-                PREFETCH(means + AHEAD);
-                PREFETCH(samples + AHEAD);
-                const short32 mean = *(__global const slanes32 *)means, sample = load_samples(samples);
-                const short32 difference = (sample - mean + (short)4) >> (short)3;
-                sum += difference;
-                square += product_of_pairs(difference, difference);
-                light += mean >> (short)3;
-            }
-            *(ilanes *)(sums + 16 * v) = product_of_pairs(sum, (short32)1);
-            *(ilanes *)(squares + 16 * v) = square;
-            *(ilanes *)(lights + 16 * v) = product_of_pairs(light, (short32)1);
-        }
-        for (int t = 0; t < block / tile; t++) {
-            int sum = 0, light = 0;
-            float square = 0.0f;
-            for (int i = t * tile / 2; i < (t + 1) * tile / 2; i++) {
-                sum += sums[i];
-                light += lights[i];
-                square += (float)squares[i];
-            }
-            out[b * (block / tile) + t] =
-                (float4)(sum / (16.0f * n), square / (256.0f * n), light / (16.0f * n), 0.0f);
-        }
+    const int y0 = min(ty * rows, part.height - rows), whole = part.width / tile;
+    FOR_WHOLE_TILES(tx, whole)
+    {
+        const Tiles tiles = measure_tiles(part, tile, rows, y0, tx * tile);
+        for (int i = 0; i < 16; i++)
+            out[tx + i] = (float4)(tiles.mean[i], tiles.square[i], tiles.light[i], 0.0f);
     }
-    for (int tx = whole * (block / tile); tx < count; tx++) {
-        const int x0 = min(tx * tile, part.width - tile);
-        float sum = 0.0f, square = 0.0f, light = 0.0f;
-        for (int y = y0; y < y0 + rows; y++)
-            for (int x = x0; x < x0 + tile; x++) {
-                const float mean = part.means[(long)y * part.width + x] / 128.0f;
-                const float difference = part.samples[(ulong)y * part.stride + x] - mean;
-                sum += difference;
-                square += difference * difference;
-                light += mean;
-            }
-        out[tx] = (float4)(sum / n, square / n, light / n, 0.0f);
-    }
+    FOR_OTHER_TILES(tx, whole, count)
+    out[tx] = measure_tile(part, tile, rows, y0, min(tx * tile, part.width - tile));
 }
 
-/* Adds to moved[] which tiles of a row moved and are not held. most[brightness]: how far a tile's mean, and its mean square,
- * may be off by noise of one sweep; of_sweeps[k]: by how much more where the mean of k sweeps is compared, for either. */
-INLINE void judge_row(__global const float4 *tiles, __global const uchar *sweeps, __global const uchar *held,
-                      __global const float2 *most, __global const float2 *of_sweeps, float least, int count,
-                      __global uchar *moved)
+/* How far a tile may be off. most[brightness]: its mean, and its mean square, by noise of one sweep; of_sweeps[k]: by how
+ * much more where the mean of k sweeps is compared, for either. */
+INLINE float2 bound_of(float light, uchar sweeps, __global const float2 *most, __global const float2 *of_sweeps,
+                       float least)
 {
-    for (int tx = 0; tx < count; tx++) {
-        const float4 tile = tiles[tx];
-        const float2 bound = most[clamp((int)tile.z, 0, BRIGHTNESSES - 1)] * of_sweeps[sweeps[tx]] + least;
-        moved[tx] |= (fabs(tile.x) > bound.x || tile.y > bound.y) && !held[tx];
+    return most[clamp((int)light, 0, BRIGHTNESSES - 1)] * of_sweeps[sweeps] + least;
+}
+
+/* Adds to moved[] which tiles of a row moved and are not held. */
+INLINE void judge_row(Part part, const int tile, const int rows, int ty, int count, __global const uchar *sweeps,
+                      __global const uchar *held, __global const float2 *most, __global const float2 *of_sweeps,
+                      float least, __global uchar *moved)
+{
+    const int y0 = min(ty * rows, part.height - rows), whole = part.width / tile;
+    FOR_WHOLE_TILES(tx, whole)
+    {
+        const Tiles tiles = measure_tiles(part, tile, rows, y0, tx * tile);
+        float16 of_mean, of_square;
+        for (int i = 0; i < 16; i++) {
+            const float2 bound = bound_of(tiles.light[i], sweeps[tx + i], most, of_sweeps, least);
+            ((float *)&of_mean)[i] = bound.x;
+            ((float *)&of_square)[i] = bound.y;
+        }
+        const int16 far = fabs(tiles.mean) > of_mean || tiles.square > of_square;
+        const int8 eight = far.lo | far.hi;
+        const int4 four = eight.lo | eight.hi;
+        if (four.x | four.y | four.z | four.w)
+            for (int i = 0; i < 16; i++)
+                moved[tx + i] |= far[i] && !held[tx + i];
+    }
+    FOR_OTHER_TILES(tx, whole, count)
+    {
+        const float4 alone = measure_tile(part, tile, rows, y0, min(tx * tile, part.width - tile));
+        const float2 bound = bound_of(alone.z, sweeps[tx], most, of_sweeps, least);
+        moved[tx] |= (fabs(alone.x) > bound.x || alone.y > bound.y) && !held[tx];
     }
 }
 
-/* sweeps[tile] of a row of tiles becomes k: stack_denoise.cl's count_sweeps(). */
-INLINE void count_row(__global const uchar *moved, __global const uchar *held, __global uchar *sweeps, int ty,
-                      int2 count, int frames)
+/* near[tile] of a row of tiles: that one moved, or one around it. */
+INLINE void look_around(__global const uchar *moved, int ty, int2 count, __global uchar *near)
 {
     __global const uchar *above = moved + (long)max(ty - 1, 0) * count.x, *here = moved + (long)ty * count.x;
     __global const uchar *below = moved + (long)min(ty + 1, count.y - 1) * count.x;
     uchar left = 0, middle = above[0] | here[0] | below[0];
     for (int tx = 0; tx < count.x; tx++) {
         const uchar right = tx + 1 < count.x ? above[tx + 1] | here[tx + 1] | below[tx + 1] : 0;
-        if (!held[tx])
-            sweeps[tx] = left | middle | right ? 1 : min(sweeps[tx] + 1, frames);
+        near[tx] = left | middle | right;
         left = middle;
         middle = right;
     }
 }
 
-/* A row of tiles. parts[] is room for a row of samples. Where nothing is `wanted`, the samples become the mean. */
-INLINE void average_row(Part part, const int tile, const int rows, int ty, int count, __global const uchar *held,
-                        __global const uchar *sweeps, int is_wanted, __global short *parts)
+/* sweeps[tile] of a row of tiles becomes k, stack_denoise.cl's count_sweeps(), unless nothing is `wanted` of the plane;
+ * shares[tile] what average_row() does there, of[k] for the mean of k sweeps. Gives whether any of them is no share. */
+INLINE int count_row(__global const uchar *near, __global const uchar *held, __global const short *of, int count,
+                     int frames, int is_wanted, __global uchar *sweeps, __global short *shares)
 {
+    int special = 0;
     for (int tx = 0; tx < count; tx++) {
-        const int k = sweeps[tx];
-        const short share = held[tx] ? HELD : !is_wanted ? 0 : k == 1 ? NEW_SCENE : (short)((32768 + k / 2) / k);
-        for (int x = tx * tile; x < tx * tile + tile; x += 4)
-            vstore4((short4)share, 0, parts + x);
+        const int k = !is_wanted || held[tx] ? sweeps[tx] : near[tx] ? 1 : min(sweeps[tx] + 1, frames);
+        const short share = held[tx] ? HELD : is_wanted ? of[k] : (short)0;
+        sweeps[tx] = (uchar)k;
+        shares[tx] = share;
+        special |= share < 0;
     }
+    return special;
+}
+
+/* The parts of 32 samples of tiles of 4, 8 or 32. */
+INLINE short32 shares_of(__global const short *shares, const int tile)
+{
+    if (tile == 4) {
+        const short8 s = *(__global const short8u *)shares;
+        return __builtin_shufflevector(s, s, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 6, 6,
+                                       6, 6, 7, 7, 7, 7);
+    }
+    if (tile == 8) {
+        const short4 s = *(__global const short4u *)shares;
+        return __builtin_shufflevector(s, s, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 3, 3,
+                                       3, 3, 3, 3, 3, 3);
+    }
+    return *shares;
+}
+
+/* The means and samples of 32 columns in a row. */
+INLINE void average_32(__global short *means, __global uchar *samples, short32 share, const int is_special)
+{
+    const short32 sample = load_samples(samples), mean = *(__global const slanes32 *)means;
+    const short32 average = mean + rounded_part_of(sample - mean, share);
+    const short32 next = !is_special ? average : share == NEW_SCENE ? sample : share == HELD ? mean : average;
+    const short32 shown = !is_special ? next : share == HELD ? sample : next;
+    *(__global slanes32 *)means = next;
+    *(__global bytes32 *)samples = __builtin_convertvector((shown + (short)64) >> (short)7, uchar32);
+}
+
+/* A row of tiles. parts[] is room for a row of samples of tiles of 24. */
+INLINE void average_row(Part part, const int tile, const int rows, int ty, int count, __global const short *shares,
+                        const int is_special, __global short *parts)
+{
+    if (tile == 24)
+        for (int tx = 0; tx < count; tx++)
+            for (int x = tx * tile; x < tx * tile + tile; x += 4)
+                *(__global short4u *)(parts + x) = shares[tx];
     const int whole = part.width / 32 * 32;
     for (int y = ty * rows; y < min(ty * rows + rows, part.height); y++) {
         __global short *means = part.means + (long)y * part.width;
         __global uchar *samples = part.samples + (ulong)y * part.stride;
-        for (int x = 0; x < whole; x += 32) {
-            const short32 sample = load_samples(samples + x), mean = *(__global const slanes32 *)(means + x);
-            const short32 share = *(__global const slanes32 *)(parts + x);
-            const short32 average = mean + rounded_part_of(sample - mean, share);
-            const short32 next = share == NEW_SCENE ? sample : share == HELD ? mean : average;
-            const short32 shown = share == HELD ? sample : next;
-            *(__global slanes32 *)(means + x) = next;
-            *(__global bytes32 *)(samples + x) = __builtin_convertvector((shown + (short)64) >> (short)7, uchar32);
-        }
+        for (int x = 0; x < whole; x += 32)
+            average_32(means + x, samples + x,
+                       tile == 24 ? *(__global const slanes32 *)(parts + x) : shares_of(shares + x / tile, tile),
+                       is_special);
         for (int x = whole; x < part.width; x++) {
+            const short share = shares[x / tile];
             const int sample = samples[x] << 7, mean = means[x];
-            const int average = mean + ((sample - mean) * parts[x] + 16384 >> 15);
-            const int next = parts[x] == NEW_SCENE ? sample : parts[x] == HELD ? mean : average;
+            const int average = mean + ((sample - mean) * share + 16384 >> 15);
+            const int next = share == NEW_SCENE ? sample : share == HELD ? mean : average;
             means[x] = (short)next;
-            samples[x] = (uchar)((parts[x] == HELD ? sample : next) + 64 >> 7);
+            samples[x] = (uchar)((share == HELD ? sample : next) + 64 >> 7);
         }
     }
 }
@@ -201,8 +334,8 @@ __kernel void measure_rows(__global uchar *stack, EACH(PLANES_OF) EACH(TILES_OF)
 
 /* A row of tiles in all planes and components, into moved[][tile]. most[c][brightness], of_sweeps[k]. */
 #define JUDGE(c)                                                                                                       \
-    measure_row(PART(c), TILE##c, ROWS##c, ty, count.x, scratch);                                                      \
-    judge_row(scratch, sweeps + tiles, held + tiles, most + c * BRIGHTNESSES, of_sweeps, least, count.x, moved + row);
+    judge_row(PART(c), TILE##c, ROWS##c, ty, count.x, sweeps + tiles, held + tiles, most + c * BRIGHTNESSES,           \
+              of_sweeps, least, moved + row);
 #define JUDGE_ROW                                                                                                      \
     const long row = (long)ty * count.x;                                                                               \
     for (int tx = 0; tx < count.x; tx++)                                                                               \
@@ -214,43 +347,47 @@ __kernel void measure_rows(__global uchar *stack, EACH(PLANES_OF) EACH(TILES_OF)
         EACH(JUDGE)                                                                                                    \
     }
 
-/* The first and the last row of tiles of each strip. scratch[work-item][tile]; work-items (strips). */
+/* The first and the last row of tiles of each strip. Work-items (strips). */
 __kernel void judge_borders(__global uchar *stack, EACH(PLANES_OF) __global const uchar *sweeps,
                             __global const float2 *most, __global const float2 *of_sweeps, __global uchar *moved,
-                            __global float4 *scratch, __global const uchar *held, int2 count, int planes, int strip,
-                            float least, ulong wanted)
+                            __global const uchar *held, int2 count, int planes, int strip, float least, ulong wanted)
 {
     const int first = (int)get_group_id(0) * strip, last = min(first + strip, count.y) - 1;
-    scratch += (long)get_group_id(0) * count.x;
     for (int ty = first; ty <= last; ty += max(last - first, 1)) {
         JUDGE_ROW
     }
 }
 
-/* parts[work-item][part_stride]; the rest as above. */
+/* of_shares[k] is that of the mean of k sweeps. near[work-item][tile]; parts[work-item][part_stride], the shares of a row of
+ * tiles and then of its samples; the rest as above. */
 __kernel void denoise_strips(__global uchar *stack, EACH(PLANES_OF) __global uchar *sweeps, __global const float2 *most,
-                             __global const float2 *of_sweeps, __global uchar *moved, __global float4 *scratch,
-                             __global short *parts, int part_stride, __global const uchar *held, int2 count, int planes,
-                             int strip, float least, int frames, ulong wanted, ulong absent)
+                             __global const float2 *of_sweeps, __global const short *of_shares, __global uchar *moved,
+                             __global uchar *near, __global short *parts, int part_stride, __global const uchar *held,
+                             int2 count, int planes, int strip, float least, int frames, ulong wanted, ulong absent)
 {
     const int first = (int)get_group_id(0) * strip, end = min(first + strip, count.y);
-    scratch += (long)get_group_id(0) * count.x;
-    parts += (long)get_group_id(0) * part_stride;
+    __global short *shares = parts + (long)get_group_id(0) * part_stride;
+    near += (long)get_group_id(0) * count.x;
+    parts = shares + SHARES(count.x);
     for (int above = first; above < end; above++) {
         const int ty = above + 1;
         if (ty < end - 1) {
             JUDGE_ROW
         }
+        look_around(moved, above, count, near);
         for (int z = 0; z < planes; z++) {
             const long tiles = ((long)z * count.y + above) * count.x;
-            const int is_wanted = wanted >> z & 1;
             if (absent >> z & 1)
                 continue;
-            if (is_wanted)
-                count_row(moved, held + tiles, sweeps + tiles, above, count, frames);
-#define AVERAGE(c)                                                                                                     \
-    average_row(PART(c), TILE##c, ROWS##c, above, count.x, held + tiles, sweeps + tiles, is_wanted, parts);
-            EACH(AVERAGE)
+            const int is_special = count_row(near, held + tiles, of_shares, count.x, frames, (int)(wanted >> z & 1),
+                                             sweeps + tiles, shares);
+#define AVERAGE(c) average_row(PART(c), TILE##c, ROWS##c, above, count.x, shares, 1, parts);
+#define AVERAGE_PLAINLY(c) average_row(PART(c), TILE##c, ROWS##c, above, count.x, shares, 0, parts);
+            if (is_special) {
+                EACH(AVERAGE)
+            } else {
+                EACH(AVERAGE_PLAINLY)
+            }
         }
     }
 }

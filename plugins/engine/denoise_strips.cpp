@@ -12,6 +12,8 @@ namespace {
 constexpr uint32_t tile_pixels = 8;
 constexpr cl_int strip_rows = 23;    /* a sixth of 1080 pixels: enough work-items for a few cores */
 constexpr size_t brightnesses = 256; /* BRIGHTNESSES of the kernels */
+constexpr cl_int shares_ahead = 16;  /* SHARES of the kernels */
+constexpr cl_short new_scene = -1;   /* NEW_SCENE of the kernels */
 constexpr size_t most_sweeps = 255;
 
 std::string build_options(const std::vector<Component> &components)
@@ -47,8 +49,9 @@ DenoiseStrips::DenoiseStrips(CommandQueue &queue, const StackShape &shape, std::
         part_stride_ = std::max(part_stride_, tiles.s[0] * tile);
     }
     const auto strips = static_cast<size_t>((tiles.s[1] + strip_ - 1) / strip_);
-    scratch_ = queue.allocate(strips * static_cast<size_t>(tiles.s[0]) * sizeof(TileDifference));
-    shares_ = queue.allocate(strips * static_cast<size_t>(part_stride_) * sizeof(cl_short));
+    part_stride_ += tiles.s[0] + shares_ahead;
+    near_ = queue.allocate(strips * static_cast<size_t>(tiles.s[0]));
+    room_ = queue.allocate(strips * static_cast<size_t>(part_stride_) * sizeof(cl_short));
     most_ = queue.allocate(components.size() * brightnesses * sizeof(cl_float2));
     host_most_.resize(components.size() * brightnesses);
 
@@ -58,13 +61,19 @@ DenoiseStrips::DenoiseStrips(CommandQueue &queue, const StackShape &shape, std::
     denoise_ = program.kernel("denoise_strips");
 
     std::vector<cl_float2> of_sweeps(most_sweeps + 1);
+    std::vector<cl_short> of_shares(most_sweeps + 1);
     for (size_t k = 0; k < of_sweeps.size(); k++) {
         const float variances = 1.0F + 1.0F / std::max(static_cast<float>(k), 1.0F);
         of_sweeps[k] = {{std::sqrt(variances), variances}};
+        const size_t share = k < 2 ? 0 : (32768 + k / 2) / k;
+        of_shares[k] = k == 1 ? new_scene : static_cast<cl_short>(share);
     }
     of_sweeps_ = queue.allocate(of_sweeps.size() * sizeof(cl_float2));
+    of_shares_ = queue.allocate(of_shares.size() * sizeof(cl_short));
     queue.commands().enqueueWriteBuffer(of_sweeps_, CL_TRUE, 0, of_sweeps.size() * sizeof(cl_float2),
                                         of_sweeps.data());
+    queue.commands().enqueueWriteBuffer(of_shares_, CL_TRUE, 0, of_shares.size() * sizeof(cl_short),
+                                        of_shares.data());
 }
 
 /* The arguments that all kernels begin with; gives the next one's place. */
@@ -122,11 +131,11 @@ void DenoiseStrips::run(const cl::Buffer &bytes, const cl::Buffer &moved, const 
 {
     upload(bounds);
     const auto planes = static_cast<cl_int>(shape_.planes);
-    run_strips(judge_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, held, tiles_, planes, strip_, least,
+    run_strips(judge_, bytes, sweeps, most_, of_sweeps_, moved, held, tiles_, planes, strip_, least,
                static_cast<cl_ulong>(wanted));
-    run_strips(denoise_, bytes, sweeps, most_, of_sweeps_, moved, scratch_, shares_, part_stride_, held,
-               tiles_, planes, strip_, least, static_cast<cl_int>(frames), static_cast<cl_ulong>(wanted),
-               static_cast<cl_ulong>(absent));
+    run_strips(denoise_, bytes, sweeps, most_, of_sweeps_, of_shares_, moved, near_, room_, part_stride_,
+               held, tiles_, planes, strip_, least, static_cast<cl_int>(frames),
+               static_cast<cl_ulong>(wanted), static_cast<cl_ulong>(absent));
 }
 
 } // namespace dff

@@ -52,9 +52,9 @@ private:
     std::vector<DenoisedPart> parts_;
     cl_int2 tiles_;
     cl_int strip_;       /* rows of tiles a work-item */
-    cl_int part_stride_; /* samples a row, at most */
+    cl_int part_stride_; /* of room_: shares of a row of tiles, and of its samples at most */
     cl::Kernel measure_, judge_, denoise_;
-    cl::Buffer scratch_, shares_, most_, of_sweeps_;
+    cl::Buffer near_, room_, most_, of_sweeps_, of_shares_;
     std::vector<cl_float2> host_most_;
 };
 
