@@ -15,10 +15,11 @@ namespace dff {
 namespace {
 
 constexpr uint32_t tile_pixels = 8;
-constexpr float sigmas_of_noise = 6.0F;  /* that a tile may be off, of strength 1 */
-constexpr unsigned mean_unit = 128;      /* of samples of 8 bits: MEAN_UNIT of the kernels */
-constexpr uint32_t enough_tiles = 8000;  /* of one plane, to learn the noise from */
-constexpr float memory_of_noise = 0.8F;  /* share of the curve that stays from stack to stack */
+constexpr float sigmas_of_noise = 6.0F; /* that a tile may be off, of strength 1 */
+constexpr unsigned mean_unit = 128;     /* of samples of 8 bits: MEAN_UNIT of the kernels */
+constexpr uint32_t enough_tiles = 8000; /* of one plane, to learn the noise from */
+constexpr float memory_of_noise = 0.8F; /* share of the curve that stays from stack to stack */
+constexpr float most_alike = 0.2F; /* samples of a tile, of all, that say the same: more is motion of all */
 constexpr float most_over_single = 4.0F; /* noise between sweeps has at most this many times the variance that
                                             one picture shows: more is motion */
 
@@ -348,9 +349,21 @@ std::vector<uint8_t> StackDenoiser::read_tiles()
     return sweeps;
 }
 
+/* The camera pans, the light is switched, the scene was cut: what differs then differs alike over whole
+ * tiles, as noise does not. */
+bool StackDenoiser::all_moved() const
+{
+    const ComponentState &first = *components_.front();
+    return spread_of_tiles(first.host_tiles, first.samples) > most_alike * first.samples;
+}
+
 void StackDenoiser::learn_noise(uint32_t frames)
 {
     const std::vector<uint8_t> sweeps = read_tiles();
+    if (all_moved()) {
+        tell_noise_left(frames, sweeps);
+        return;
+    }
     for (const auto &part : components_) {
         const auto between = noise_of_tiles(part->host_tiles, sweeps, part->component, part->samples);
         if (!between)

@@ -72,6 +72,7 @@ private:
     void run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
     uint32_t learned_step() const;
     std::vector<uint8_t> read_tiles();
+    bool all_moved() const;
     void learn_noise(uint32_t frames);
     void tell_noise_left(uint32_t frames, std::span<const uint8_t> sweeps);
     template <typename... Arguments> void enqueue_tiles(cl::Kernel &kernel, const Arguments &...arguments);

@@ -36,17 +36,18 @@ def camera(options, where):
         f't.depth ! {QUEUE} ! filesink location={where}/depth  t.motion ! {QUEUE} ! filesink location={where}/motion')
 
 
-def computed(where, way):
-    """Depth and picture of the sweeps: pixels of unit=index, and RGB."""
+def computed(where, way, depth='dffdepth'):
+    """Depth and picture of all sweeps: pixels of unit=index, and RGB."""
     run(f'filesrc location={where}/stacks blocksize={PLANES * HEIGHT * WIDTH * 3} ! '
         f'video/x-focal-stack,format=RGB,width={WIDTH},height={HEIGHT},planes={PLANES},framerate=26/1 ! {way} tee name=s '
-        f's. ! queue ! dffdepth unit=index ! tee name=d  d. ! queue ! filesink location={where}/found  s. ! queue ! c.stack  d. ! queue ! c.depth '
+        f's. ! queue ! {depth} unit=index ! tee name=d  d. ! queue ! filesink location={where}/found  s. ! queue ! c.stack  d. ! queue ! c.depth '
         f'aifcompose name=c ! filesink location={where}/picture')
-    return (np.fromfile(where / 'found', '<u2').reshape(-1, HEIGHT, WIDTH)[FIRST:],
-            np.fromfile(where / 'picture', 'u1').reshape(-1, HEIGHT, WIDTH, 3)[FIRST:])
+    return (np.fromfile(where / 'found', '<u2').reshape(-1, HEIGHT, WIDTH),
+            np.fromfile(where / 'picture', 'u1').reshape(-1, HEIGHT, WIDTH, 3))
 
 
 def score(depth, picture, truth, reference, zone):
+    depth, picture, reference = depth[FIRST:], picture[FIRST:], reference[FIRST:]
     off = np.abs(depth.astype(np.float64) - truth)[zone] > 65534 / (PLANES - 1)
     squares = (picture.astype(np.float64) - reference)[zone] ** 2
     return 100 * off.mean(), 10 * np.log10(255 ** 2 / max(squares.mean(), 1e-9))
@@ -75,6 +76,7 @@ def main():
     parser.add_argument('--speeds', nargs='+', type=float, default=[4.0], help='pixels a plane')
     parser.add_argument('--noise', nargs='+', default=['none', 'strong'])
     parser.add_argument('--seeds', nargs='+', type=int, default=[3])
+    parser.add_argument('--blur-step', type=float, default=2.0, help='pixels a plane')
     parser.add_argument('--sweeps', type=int, default=14)
     arguments = parser.parse_args()
     ways = [('as it is', ''), ('local-motion', 'focalstackdenoise frames=16 local-motion=true !')]
@@ -83,7 +85,7 @@ def main():
             for speed in arguments.speeds:
                 for noise in arguments.noise:
                     for seed in arguments.seeds:
-                        options = f'num-buffers={PLANES * arguments.sweeps} seed={seed} motion={speed} objects={objects}'
+                        options = f'blur-step={arguments.blur_step} num-buffers={PLANES * arguments.sweeps} seed={seed} motion={speed} objects={objects}'
                         told = judge(options, noise, Path(folder), ways)
                         print(f'{objects} {speed:g} px a plane, noise {noise}, seed {seed}: ' +
                               ', '.join(f'{name} {off:.1f} % {dB:.1f} dB' for name, (off, dB) in told), flush=True)

@@ -333,6 +333,19 @@ TEST_P(Formats, a_cut_shows_the_new_scene_alone)
     EXPECT_EQ(stack.memory, cut.memory);
 }
 
+/* What all of the picture does from the first sweep on is not learned as noise. */
+TEST_P(Formats, a_camera_that_pans_leaves_no_ghost)
+{
+    const StackShape shape{GetParam().format, 320, 240, 2};
+    StackDenoiser denoiser(device_with(GetParam().style), shape);
+    for (unsigned t = 0; t < 4; t++) {
+        const TestStack input = noisy(smooth_stack(shape, 0.4 * t), 6.0, t);
+        TestStack stack = input;
+        denoise(denoiser, stack);
+        EXPECT_LT(mean_square(stack, input), 0.02 * 36.0) << "stack " << t;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(StackDenoiser, Formats,
                          testing::Values(Case{PixelFormat::Gray8, KernelStyle::Tiles},
                                          Case{PixelFormat::Gray8, KernelStyle::Pixels},
