@@ -3,7 +3,8 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 #
 # Builds the unit tests of the camera with the thread sanitizer, in build-tsan, and runs them, lenssweepsrc's among them, and those
-# of lenses that are moved through a pipeline or a serial port; then lenssweepsrc against the bench camera, as root.
+# of lenses that are moved through a pipeline or a serial port; then lenssweepsrc against the bench camera, and the lenses that
+# the virtual machine has, as root.
 # tests/unit/camera/glib_locks.cpp shows the sanitizer GLib's locks. The bench camera renders with OpenCV's threads, which the
 # sanitizer does not see: it is BENCH_CAMERA, or build/'s.
 set -euo pipefail
@@ -13,7 +14,7 @@ cd "$(dirname "$0")/.."
     meson setup build-tsan -Doptimization=1 -Ddebug=true -Db_sanitize=thread -Db_lundef=false -Dintrospection=disabled
 tests=(labeller plane_labels trigger_count capture lenssweepsrc)
 ninja -C build-tsan "${tests[@]/#/tests/unit/camera/test_}" tests/unit/lenssweep/test_{element_lens,optotune,testsrc_stream} \
-    tests/unit/lens/test_optotune_lens tests/rig/source/rig-proofs \
+    tests/unit/lens/test_optotune_lens tests/rig/source/rig-proofs tests/rig/vm/rig-vm-tests \
     plugins/lenssweep/libgstlenssweep.so plugins/focalstack/libgstfocalstack.so
 # What other plug-ins do while the registry is made is not ours to judge.
 TSAN_OPTIONS=report_bugs=0 meson test -C build-tsan --no-rebuild 'camera lenssweepsrc' --test-args=--gtest_list_tests >/dev/null
@@ -27,3 +28,6 @@ if [ -x "$BENCH_CAMERA" ]; then
 else
     echo "skipped lenssweepsrc against the bench camera: there is no $BENCH_CAMERA"
 fi
+# fpga:, max14574: and v4l2:. Emulated and sanitized, all takes ten times as long as it does emulated.
+GTEST_FILTER=${VM_TESTS:-Sequencer.*:LensDriver.*:VideoLens.*:SubdeviceLens.*:EveryLens.*:StepMode.*:SyncMode.*} DFF_VM_SECONDS=1500 \
+    meson test -C build-tsan --no-rebuild --print-errorlogs -t 5 'virtual machine'

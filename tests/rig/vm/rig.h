@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -63,6 +64,21 @@ inline std::vector<std::string> i2c_log()
 inline void empty_i2c_log()
 {
     write_file("/proc/rig_i2c", "empty");
+}
+
+/* What the lens driver was told, and when. */
+struct Commit {
+    uint64_t time_ns; /* CLOCK_MONOTONIC */
+    int code;
+};
+
+inline std::vector<Commit> lens_commits()
+{
+    std::istringstream text(read_file("/proc/rig_lens"));
+    std::vector<Commit> commits;
+    for (Commit commit{}; text >> commit.time_ns >> commit.code;)
+        commits.push_back(commit);
+    return commits;
 }
 
 /* The next transfers are not acknowledged. */

@@ -88,7 +88,7 @@ done
 
 rm -f "$cache"/out/*
 printf '%q ' "$@" >"$cache/out/command"
-export -p | grep -E '^declare -x (GST_|DFF_|GI_|GTEST_|LD_LIBRARY_PATH)' >"$cache/out/environment" || true
+export -p | grep -E '^declare -x (GST_|DFF_|GI_|GTEST_|TSAN_|LD_LIBRARY_PATH)' >"$cache/out/environment" || true
 pwd >"$cache/out/folder"
 cp "$here/guest.sh" "$cache/out/guest.sh"
 timeout "$seconds" qemu-system-x86_64 -accel tcg,thread=multi -machine pc -cpu max -smp 2 -m 1024 -display none -no-reboot -nodefaults \

@@ -76,6 +76,43 @@ TEST(StepMode, frames_show_the_lens_at_the_plane_of_their_label)
     EXPECT_GE(count_of(tag, "dropped"), 9U);
 }
 
+/* The bus tells when the lens was told what. A frame comes, and is stamped, as its exposure ends: from a
+ * settle time before that began, the lens must have had no other code than that of the label. */
+TEST(StepMode, no_frame_is_labelled_that_a_lens_driver_was_not_at_rest_for)
+{
+    constexpr unsigned planes = 3;
+    constexpr unsigned labelled = 60;
+    constexpr guint64 exposure = GST_SECOND / 30; /* as long as the frame's time */
+    constexpr guint64 settle = 20 * GST_MSECOND;  /* of the nominal profile */
+    Pipeline pipeline(
+        "videotestsrc is-live=true ! video/x-raw,width=64,height=64,framerate=30/1 ! lenssweeptag name=tag "
+        "lens=max14574:" +
+        rig::i2c_bus() + " mode=step planes=3 near=5 far=0 ! appsink name=out max-buffers=200");
+    ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+    std::vector<Sample> samples;
+    while (samples.size() < labelled) {
+        samples.push_back(pipeline.pull("out"));
+        ASSERT_TRUE(samples.back()) << pipeline.wait();
+    }
+    const auto commits = rig::lens_commits();
+    const guint64 base = gst_element_get_base_time(pipeline.get());
+    for (size_t i = 0; i < labelled; ++i) {
+        const GstFocusMeta *focus = focus_of(samples[i]);
+        EXPECT_EQ(focus->sweep, i / planes);
+        EXPECT_EQ(focus->plane, i % planes);
+        EXPECT_DOUBLE_EQ(focus->power, 5.0 - 2.5 * static_cast<double>(i % planes));
+        const guint64 end = base + GST_BUFFER_PTS(gst_sample_get_buffer(samples[i].get()));
+        const auto after = std::find_if(commits.begin(), commits.end(), [&](const rig::Commit &commit) {
+            return commit.time_ns > end - exposure - settle;
+        });
+        ASSERT_NE(after, commits.begin());
+        EXPECT_EQ(std::prev(after)->code, focus->code) << "frame " << i;
+        EXPECT_TRUE(after == commits.end() || after->time_ns >= end) << "frame " << i;
+    }
+    pipeline.set_state(GST_STATE_NULL);
+    EXPECT_EQ(rig::i2c_log().back(), "77 03=00") << "asleep";
+}
+
 TEST(StepMode, lenses_are_listed_and_errors_tell_of_them)
 {
     g_autoptr(GstDeviceProvider) provider =

@@ -4,8 +4,10 @@
  * An I2C bus with two slaves: at 0x3c the words of the sweep sequencer (fpga/registers.toml), at 0x77 the
  * bytes of a MAX14574. Takes I2C_RDWR and, through the kernel's emulation, SMBus. /proc/rig_i2c is the log of
  * what was written, a line a register: "3c 02=0001" (a word), "77 09=02" (a byte); writing to it empties it.
- * The next `nack` transfers are not acknowledged. */
+ * /proc/rig_lens tells when the lens was told what: a line a commit, nanoseconds of CLOCK_MONOTONIC and the
+ * code, "12345678 512". The next `nack` transfers are not acknowledged. */
 #include <linux/i2c.h>
+#include <linux/ktime.h>
 #include <linux/module.h>
 #include <linux/mutex.h>
 #include <linux/proc_fs.h>
@@ -18,6 +20,11 @@
 #define ROW_WORDS 4
 #define ERROR 0x04
 #define LOG_BYTES 65536
+#define COMMITS 4096 /* that are kept: the last ones */
+#define OIS_LSB 0x04
+#define LLV4 0x08
+#define COMMAND 0x09
+#define UPDATE_OUTPUT 0x02
 
 static int nack;
 module_param(nack, int, 0644);
@@ -28,6 +35,11 @@ static u16 rows[64][ROW_WORDS];
 static u8 bytes[256];
 static char log_text[LOG_BYTES];
 static size_t log_length;
+static struct {
+    u64 time_ns;
+    unsigned int code;
+} commits[COMMITS];
+static unsigned int commit_count;
 
 static void log_write(unsigned int slave, unsigned int number, unsigned int value, int digits)
 {
@@ -74,6 +86,11 @@ static int write_lens(const u8 *data, size_t length)
 
         log_write(LENS, number, data[at], 2);
         bytes[number] = data[at];
+        if (number == COMMAND && data[at] == UPDATE_OUTPUT) {
+            commits[commit_count % COMMITS].time_ns = ktime_get_ns();
+            commits[commit_count % COMMITS].code = bytes[LLV4] << 2 | bytes[OIS_LSB] >> 6;
+            commit_count++;
+        }
     }
     return 0;
 }
@@ -165,11 +182,23 @@ static const struct proc_ops log_operations = {
     .proc_write = empty_log,
 };
 
+static int show_lens(struct seq_file *file, void *unused)
+{
+    unsigned int at;
+
+    mutex_lock(&lock);
+    for (at = commit_count > COMMITS ? commit_count - COMMITS : 0; at < commit_count; at++)
+        seq_printf(file, "%llu %u\n", commits[at % COMMITS].time_ns, commits[at % COMMITS].code);
+    mutex_unlock(&lock);
+    return 0;
+}
+
 static int __init rig_i2c_init(void)
 {
     int result = i2c_add_adapter(&adapter);
 
-    if (!result && !proc_create("rig_i2c", 0600, NULL, &log_operations)) {
+    if (!result && (!proc_create("rig_i2c", 0600, NULL, &log_operations) ||
+                    !proc_create_single("rig_lens", 0400, NULL, show_lens))) {
         i2c_del_adapter(&adapter);
         result = -ENOMEM;
     }
@@ -178,6 +207,7 @@ static int __init rig_i2c_init(void)
 
 static void __exit rig_i2c_exit(void)
 {
+    remove_proc_entry("rig_lens", NULL);
     remove_proc_entry("rig_i2c", NULL);
     i2c_del_adapter(&adapter);
 }
