@@ -243,6 +243,27 @@ static FrameTrace trace_of(const GstBuffer *buffer)
     return trace;
 }
 
+/* By how much CLOCK_MONOTONIC is ahead of a clock. They cannot be read at once, and whoever reads them may be
+ * kept waiting in between: it is read between two readings of the clock, and of a few attempts that one
+ * counts where these lie closest. */
+static GstClockTimeDiff monotonic_lead(GstClock *clock)
+{
+    constexpr int attempts = 8;
+    constexpr GstClockTimeDiff close_enough = 20 * GST_USECOND;
+    GstClockTimeDiff closest = G_MAXINT64;
+    GstClockTimeDiff lead = 0;
+    for (int attempt = 0; attempt < attempts && closest > close_enough; attempt++) {
+        const GstClockTime before = gst_clock_get_time(clock);
+        const GstClockTimeDiff monotonic = g_get_monotonic_time() * 1000;
+        const GstClockTimeDiff passed = GST_CLOCK_DIFF(before, gst_clock_get_time(clock));
+        if (passed >= closest)
+            continue;
+        closest = passed;
+        lead = monotonic - static_cast<GstClockTimeDiff>(before) - passed / 2;
+    }
+    return lead;
+}
+
 /* The time of a frame on CLOCK_MONOTONIC, in which the kernel stamps edges; unknown without a running clock.
  */
 static std::optional<uint64_t> monotonic_time_of(GstBaseTransform *transform, const GstBuffer *buffer)
@@ -252,8 +273,7 @@ static std::optional<uint64_t> monotonic_time_of(GstBaseTransform *transform, co
     if (!clock || !GST_CLOCK_TIME_IS_VALID(running))
         return std::nullopt;
     const GstClockTime stamped = gst_element_get_base_time(GST_ELEMENT(transform)) + running;
-    const GstClockTimeDiff ago = GST_CLOCK_DIFF(stamped, gst_clock_get_time(clock));
-    return static_cast<uint64_t>(g_get_monotonic_time() * 1000 - ago);
+    return stamped + static_cast<uint64_t>(monotonic_lead(clock));
 }
 
 static std::optional<PlaneLabel> find_label(GstLensSweepTag *self, GstBuffer *buffer, const FrameTrace &trace)

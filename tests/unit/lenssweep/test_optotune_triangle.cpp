@@ -38,6 +38,32 @@ std::string tagger(const FakeOptotune &driver, const std::string &line, const Pr
            " lens-profile=" + profile.path() + " lens=optotune:" + driver.device() + " ! ";
 }
 
+/* A clock that is read in time; but now and then whoever reads it is kept waiting then, as on a busy machine.
+ */
+struct SlowClock {
+    GstClock parent;
+    guint reads;
+};
+struct SlowClockClass {
+    GstClockClass parent;
+};
+G_DEFINE_TYPE(SlowClock, slow_clock, GST_TYPE_CLOCK)
+
+GstClockTime read_slowly(GstClock *clock)
+{
+    const auto now = static_cast<GstClockTime>(g_get_monotonic_time()) * 1000;
+    if (++reinterpret_cast<SlowClock *>(clock)->reads % 23 == 0)
+        g_usleep(40000); /* two frames */
+    return now;
+}
+
+void slow_clock_class_init(SlowClockClass *klass)
+{
+    GST_CLOCK_CLASS(klass)->get_internal_time = read_slowly;
+}
+
+void slow_clock_init(SlowClock *) {}
+
 /* Frames of a camera that is wired to the driver. */
 class Swing {
 public:
@@ -111,6 +137,16 @@ TEST(TriangleSweep, a_lens_that_follows_late_is_labelled_right_if_its_lag_is_tol
     FakeOptotune driver;
     Swing swing(driver, 8ms, 8ms);
     g_object_set(swing.pipeline.element("tag"), "timestamp-delay", G_GUINT64_CONSTANT(8000000), nullptr);
+    expect_labels(swing, 60);
+}
+
+TEST(TriangleSweep, a_reader_of_the_clock_who_is_kept_waiting_labels_no_frame_wrongly)
+{
+    FakeOptotune driver;
+    Swing swing(driver, 0ns, 0ns, "appsink name=out max-buffers=200 sync=false");
+    auto *clock = static_cast<GstClock *>(g_object_new(slow_clock_get_type(), nullptr));
+    gst_pipeline_use_clock(GST_PIPELINE(swing.pipeline.get()), clock);
+    gst_object_unref(gst_object_ref_sink(clock));
     expect_labels(swing, 60);
 }
 
