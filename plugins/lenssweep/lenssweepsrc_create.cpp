@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lenssweepsrc_private.h"
+#include "monotonic_lead.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,31 +92,13 @@ static bool take_changes(GstLensSweepSrc *self)
     return tell_frame_rate(self, settings.frame_rate());
 }
 
-/* What the pipeline's clock is ahead of CLOCK_MONOTONIC. Both are read again if this thread had to wait
- * between. */
-static gint64 ahead_ns(GstClock *clock)
-{
-    gint64 ahead = 0;
-    gint64 least_ns = G_MAXINT64;
-    for (int i = 0; i < 10 && least_ns > 100'000; i++) {
-        const gint64 before_ns = dff::host_now_ns();
-        const auto clock_ns = static_cast<gint64>(gst_clock_get_time(clock));
-        const gint64 between_ns = dff::host_now_ns() - before_ns;
-        if (between_ns < least_ns) {
-            least_ns = between_ns;
-            ahead = clock_ns - before_ns - between_ns / 2;
-        }
-    }
-    return ahead;
-}
-
 /* The running time of a moment of CLOCK_MONOTONIC; none before the pipeline's base time. */
 static GstClockTime running_time_of(GstLensSweepSrc *self, gint64 host_ns)
 {
     g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(self));
     if (!clock)
         return GST_CLOCK_TIME_NONE;
-    const gint64 moment = host_ns + ahead_ns(clock);
+    const gint64 moment = host_ns - monotonic_lead(clock);
     const auto base = static_cast<gint64>(gst_element_get_base_time(GST_ELEMENT(self)));
     return moment < base ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(moment - base);
 }

@@ -51,6 +51,7 @@
 #include "common/checked_properties.h"
 #include "common/running_time.h"
 #include "element_property.h"
+#include "monotonic_lead.h"
 #include "sweep_tagger.h"
 
 #include <exception>
@@ -241,27 +242,6 @@ static FrameTrace trace_of(const GstBuffer *buffer)
         trace.time_ns = GST_BUFFER_PTS(buffer);
     trace.discontinuous = GST_BUFFER_IS_DISCONT(buffer);
     return trace;
-}
-
-/* By how much CLOCK_MONOTONIC is ahead of a clock. They cannot be read at once, and whoever reads them may be
- * kept waiting in between: it is read between two readings of the clock, and of a few attempts that one
- * counts where these lie closest. */
-static GstClockTimeDiff monotonic_lead(GstClock *clock)
-{
-    constexpr int attempts = 8;
-    constexpr GstClockTimeDiff close_enough = 20 * GST_USECOND;
-    GstClockTimeDiff closest = G_MAXINT64;
-    GstClockTimeDiff lead = 0;
-    for (int attempt = 0; attempt < attempts && closest > close_enough; attempt++) {
-        const GstClockTime before = gst_clock_get_time(clock);
-        const GstClockTimeDiff monotonic = g_get_monotonic_time() * 1000;
-        const GstClockTimeDiff passed = GST_CLOCK_DIFF(before, gst_clock_get_time(clock));
-        if (passed >= closest)
-            continue;
-        closest = passed;
-        lead = monotonic - static_cast<GstClockTimeDiff>(before) - passed / 2;
-    }
-    return lead;
 }
 
 /* The time of a frame on CLOCK_MONOTONIC, in which the kernel stamps edges; unknown without a running clock.
