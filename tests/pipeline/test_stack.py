@@ -20,6 +20,32 @@ from sweeps import SECONDS, Folders, write
 
 SOURCE = pathlib.Path(sys.argv[1])
 PROGRAM = SOURCE / 'pipelines/stack/dff-stack'
+
+
+ISO, FOCAL_LENGTH_35MM, LATITUDE_REF = 0x8827, 0xa405, 1
+POINTERS = (0x8769, 0x8825)
+
+
+def exif_of(path):
+    """Some values of the tables of EXIF and GPS in a TIFF, JPEG or PNG file."""
+    data = path.read_bytes()
+    start = {'.jpg': data.find(b'Exif\0\0') + 6, '.png': data.find(b'eXIf') + 4, '.tif': 0}[path.suffix]
+    data, found = data[start:], {}
+    assert data[:4] == b'II*\0'
+    tables = [struct.unpack_from('<I', data, 4)[0]]
+    for at in tables:
+        before = -1
+        for k in range(struct.unpack_from('<H', data, at)[0]):
+            tag, kind, count, field = struct.unpack_from('<HHI4s', data, at + 2 + 12 * k)
+            assert before < tag or path.suffix != '.tif', f'{tag} after {before}'
+            before = tag
+            if tag in POINTERS:
+                tables.append(struct.unpack('<I', field)[0])
+            if at != tables[0] and tag in (ISO, FOCAL_LENGTH_35MM, LATITUDE_REF):
+                found[tag] = field
+    return found
+
+
 def read(path):
     image = oiio.ImageInput.open(str(path))
     assert image, oiio.geterror()
@@ -133,23 +159,34 @@ class Results(Program):
             self.assertGreater(len(np.unique(pixels[:, :, 0])), 4096)
 
     def test_exif_and_profile_are_kept(self):
-        profile = struct.pack('>I4xI4s4s4s', 140, 0x04000000, b'mntr', b'RGB ', b'XYZ ').ljust(36, b'\0') + b'acsp' + b'mine' * 25
+        profile = struct.pack('>I4xI4s4s4s', 256, 0x04000000, b'mntr', b'RGB ', b'XYZ ').ljust(36, b'\0') + b'acsp'
+        profile = (profile.ljust(68, b'\0') + bytes.fromhex('0000f6d6000100000000d32d')).ljust(132, b'\0') + b'mine' * 31
         segment = b'ICC_PROFILE\0\1\1' + profile
         for number in range(2):
             spec = oiio.ImageSpec(WIDTH, HEIGHT, 3, oiio.UINT8)
             spec['ExposureTime'], spec['Make'], spec['Orientation'] = 0.01, 'Maker', 3
+            spec['Exif:PhotographicSensitivity'], spec['Exif:LensModel'], spec['Artist'] = 400, 'Macro 100', 'Jürgen 山'
+            spec['GPS:LatitudeRef'], spec['Exif:FocalLengthIn35mmFilm'] = 'N', 150
             output = oiio.ImageOutput.create('x.jpg')
-            path = self.photos / f'{number}.jpg'
+            path = self.photos / f'{number}ü.jpg'
             turned = np.ascontiguousarray(np.round(plane(3 * number)).astype(np.uint8)[::-1, ::-1])
             assert output.open(str(path), spec) and output.write_image(turned) and output.close()
             path.write_bytes(b'\xff\xd8\xff\xe2' + struct.pack('>H', len(segment) + 2) + segment + path.read_bytes()[2:])
-        for name in ('a.tif', 'a.jpg', 'a.exr'):
+        for name in ('a.tif', 'a.jpg', 'a.png', 'a.exr'):
             self.stack(self.photos, '-o', self.out / name)
             spec, pixels = read(self.out / name)
-            self.assertAlmostEqual(spec.get_float_attribute('ExposureTime'), 0.01, places=4)
-            self.assertEqual((spec.get_string_attribute('Make'), spec.get_int_attribute('Orientation')), ('Maker', 1))
-            has_profile = profile in (self.out / name).read_bytes()
-            self.assertEqual(has_profile, name != 'a.exr')
+            if name != 'a.png':  # whose EXIF OpenImageIO does not read
+                self.assertAlmostEqual(spec.get_float_attribute('ExposureTime'), 0.01, places=4)
+            self.assertEqual((spec.get_string_attribute('Make'), spec.get_int_attribute('Orientation', 1)), ('Maker', 1))
+            self.assertEqual((spec.get_string_attribute('Artist'), spec.get_string_attribute('Exif:LensModel')), ('Jürgen 山', 'Macro 100'))
+            self.assertIn('0ü.jpg', spec.get_string_attribute('ImageDescription'))
+            if name != 'a.exr':
+                self.assertEqual(exif_of(self.out / name), {ISO: b'\x90\1\0\0', FOCAL_LENGTH_35MM: b'\x96\0\0\0', LATITUDE_REF: b'N\0\0\0'})
+            if name == 'a.png':  # texts without a language have letters of Latin-1
+                self.assertIn(b'iTXtAuthor\0\0\0\0\0' + 'Jürgen 山'.encode(), (self.out / name).read_bytes())
+            else:
+                has_profile = profile in (self.out / name).read_bytes()
+                self.assertEqual(has_profile, name != 'a.exr')
 
     def test_linear_light_comes_back(self):
         for number in range(PLANES):

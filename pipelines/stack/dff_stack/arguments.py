@@ -26,8 +26,7 @@ ORDER
 RESULTS
   The ending of a name says what is written: .tif, .png, .jpg or .exr. All results are written when everything is computed; if
   something fails or Ctrl-C is pressed, none is. TIFF, PNG have the bits of the pictures, JPEG 8, EXR half floats of linear
-  light. EXIF of the first picture, its profile and what was done stand in the file (PNG holds no EXIF here). Pictures are
-  turned upright.
+  light. EXIF of the first picture, its profile and what was done stand in the file. Pictures are turned upright.
   --depth   TIFF and EXR: numbers with a point, NaN where depth is not known. They are micrometres where the step between
             pictures is known: from --step, or from an OME-TIFF; else plane numbers, 0 for the first picture of the order.
             PNG: 16 bits; the description in the file says what a pixel means, 0 is not known.

@@ -9,7 +9,7 @@ import re
 import numpy as np
 import OpenImageIO as oiio
 
-from dff_stack import SOFTWARE, Unusable, one_line
+from dff_stack import SOFTWARE, Unusable, exif, one_line
 
 PICTURE_ENDINGS = ('.tif', '.tiff', '.png', '.jpg', '.jpeg', '.exr')
 # What describes the file that was read and not the picture in it.
@@ -136,7 +136,25 @@ def write_picture(files, path, pixels, first, description):
         spec.set_format(oiio.HALF)
         spec.erase_attribute('ICCProfile.*')
         spec['oiio:ColorSpace'] = 'Linear'
-    write(files.begin(path), held, spec, path)
+        taken = first.get_string_attribute('Exif:DateTimeOriginal')
+        if taken:
+            spec['DateTime'] = taken  # which EXR files have as the time of capture
+    write_with_facts(files.begin(path), held, spec, path)
+
+
+def write_with_facts(unfinished, held, spec, path):
+    """With EXIF and texts that OpenImageIO leaves out of some files."""
+    facts = oiio.ImageSpec(spec)
+    if path.suffix.lower() == '.png':
+        texts = exif.beyond_ascii(spec)
+        for name in texts:
+            spec.erase_attribute(re.escape(name))
+        write(unfinished, held, spec, path)
+        exif.complete_png(unfinished, facts, texts)
+        return
+    write(unfinished, held, spec, path)
+    if path.suffix.lower() in ('.tif', '.tiff'):
+        exif.complete_tiff(unfinished, facts)
 
 
 def code_of(depth, least, most):
