@@ -7,6 +7,7 @@ import pathlib
 import shutil
 import struct
 import sys
+import time
 import unittest
 
 import numpy as np
@@ -15,7 +16,7 @@ import OpenImageIO as oiio
 from sweeps import CMYK, SIDE, Folders, flat, texture, write
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, depths, encoding, order, sweep  # noqa: E402
+from dff_stack import Unusable, ahead, depths, encoding, order, sweep  # noqa: E402
 from dff_stack.progress import Progress  # noqa: E402
 
 
@@ -373,6 +374,26 @@ class BadPixels(Sweeps):
         for number in (3, 4, 5):
             (self.photos / f'{number}.png').unlink()
         self.assertEqual(len(self.frames()[0].bad_pixels), 0)
+
+
+class SideBySide(unittest.TestCase):
+    def test_pictures_come_in_their_order(self):
+        def late(number):
+            time.sleep(0.02 * (number % 3))
+            return number
+
+        self.assertEqual(list(ahead.in_order(late, range(12))), list(range(12)))
+
+    def test_what_fails_is_told_where_it_is(self):
+        def broken(number):
+            if number == 3:
+                raise Unusable('the third')
+            return number
+
+        found = ahead.in_order(broken, range(12))
+        self.assertEqual([next(found) for _ in range(3)], [0, 1, 2])
+        with self.assertRaisesRegex(Unusable, 'the third'):
+            next(found)
 
 
 class Shrinking(unittest.TestCase):

@@ -69,7 +69,10 @@ def shrunk_luma(pixels, longest):
     """The mean of the channels over squares, so that the longer side has `longest` pixels or up to twice that, as floats."""
     factor = max(1, max(pixels.shape[:2]) // longest)
     rows, columns, channels = pixels.shape[0] // factor, pixels.shape[1] // factor, pixels.shape[2]
-    total = np.float32 if pixels.dtype.kind == 'f' else np.uint32
     strips = np.ascontiguousarray(pixels[:rows * factor, :columns * factor]).reshape(rows, factor, columns * factor * channels)
-    sums = strips.sum(1, dtype=total).reshape(rows, columns, factor * channels).sum(2, dtype=np.float32)
-    return sums / np.float32(factor * factor * channels)
+    total = {'u1': np.uint16, 'u2': np.uint32, 'f4': np.float32}[pixels.dtype.str[1:]]  # 257 rows of 255 fit
+    of_rows = strips[:, 0].astype(total)
+    for k in range(1, factor):  # many times as fast as sum() with another type
+        of_rows += strips[:, k]
+    sums = of_rows.reshape(-1, factor * channels).astype(np.float32) @ np.ones(factor * channels, np.float32)
+    return sums.reshape(rows, columns) / np.float32(factor * factor * channels)

@@ -7,7 +7,7 @@ import tempfile
 
 import numpy as np
 
-from dff_stack import alignment, engine, joining, slabs
+from dff_stack import ahead, alignment, engine, joining, slabs
 
 
 @dataclasses.dataclass
@@ -66,8 +66,8 @@ class Frames:
         return len(self.numbers)
 
     def __iter__(self):
-        for number in self.numbers:
-            yield self.source.read(number, number in self.kept)
+        for frame in ahead.in_order(lambda number: self.source.read(number, number in self.kept), self.numbers):
+            yield frame
             self.progress.step()
 
 

@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from dff_stack import Unusable, depths, encoding, listed, order, pictures
+from dff_stack import Unusable, ahead, depths, encoding, listed, order, pictures
 from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
@@ -76,6 +76,10 @@ class Sweep:
         found = picture.pixels(self.encoding.read_as)
         return found if self.shrink == 1 else smaller(found, self.shrink)
 
+    def pixels_and_luma(self, picture):
+        pixels = self.pixels(picture)
+        return pixels, encoding.shrunk_luma(pixels, SMALL)
+
     def read(self, number, keep=False):
         """A frame of the stack. It stays in memory if it is wanted again."""
         picture = self.pictures[number]
@@ -91,10 +95,8 @@ class Sweep:
         """Reads every picture. The first `keep` frames stay in memory, since they are wanted first."""
         look = Look([], 1, [], 1e-9)
         bad = BadPixels(self.count if self.shrink == 1 and not self.encoding.is_float else 0)
-        for number, picture in enumerate(self.pictures):
-            pixels = self.pixels(picture)
+        for number, (pixels, luma) in enumerate(ahead.in_order(self.pixels_and_luma, self.pictures)):
             look.factor = max(1, max(pixels.shape[:2]) // SMALL)
-            luma = encoding.shrunk_luma(pixels, SMALL)
             bad.look_at(number, pixels, self.encoding.largest)
             if self.encoding.is_float:
                 luma = np.nan_to_num(luma, posinf=0.0)
@@ -103,7 +105,7 @@ class Sweep:
             else:
                 look.lumas.append(np.round(luma * (255 / self.encoding.largest)).astype(np.uint8))
                 if number < keep:
-                    self.kept[picture] = self.encoding.encode(pixels)
+                    self.kept[self.pictures[number]] = self.encoding.encode(pixels)
             progress.step()
         if self.encoding.is_float:
             self.encoding = dataclasses.replace(self.encoding, white=look.white)
