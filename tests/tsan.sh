@@ -13,14 +13,15 @@ cd "$(dirname "$0")/.."
 [ -f build-tsan/build.ninja ] ||
     meson setup build-tsan -Doptimization=1 -Ddebug=true -Db_sanitize=thread -Db_lundef=false -Dintrospection=disabled
 tests=(labeller plane_labels trigger_count capture lenssweepsrc)
-ninja -C build-tsan "${tests[@]/#/tests/unit/camera/test_}" tests/unit/lenssweep/test_{element_lens,optotune,testsrc_stream} \
+ninja -C build-tsan "${tests[@]/#/tests/unit/camera/test_}" tests/unit/lenssweep/test_{element_lens,optotune,optotune_triangle,testsrc_stream} \
     tests/unit/lens/test_optotune_lens tests/rig/source/rig-proofs tests/rig/vm/rig-vm-tests \
     plugins/lenssweep/libgstlenssweep.so plugins/focalstack/libgstfocalstack.so
 # What other plug-ins do while the registry is made is not ours to judge.
 TSAN_OPTIONS=report_bugs=0 meson test -C build-tsan --no-rebuild 'camera lenssweepsrc' --test-args=--gtest_list_tests >/dev/null
 export TSAN_OPTIONS="suppressions=$PWD/tests/thread.supp:exitcode=66" DFF_SEQUENCES=300 DFF_CYCLES=8
 meson test -C build-tsan --no-rebuild --print-errorlogs "${tests[@]/#/camera }"
-meson test -C build-tsan --no-rebuild --print-errorlogs 'lens optotune_lens' 'lenssweep optotune' 'lenssweep element_lens'
+meson test -C build-tsan --no-rebuild --print-errorlogs 'lens optotune_lens' 'lenssweep optotune' 'lenssweep optotune_triangle' \
+    'lenssweep element_lens'
 meson test -C build-tsan --no-rebuild --print-errorlogs 'lenssweep testsrc_stream' --test-args='--gtest_filter=TestSrcLatency.*'
 export BENCH_CAMERA=${BENCH_CAMERA:-$PWD/build/tests/rig/bench-camera/bench-camera} DFF_RIG_CYCLES=4
 if [ -x "$BENCH_CAMERA" ]; then

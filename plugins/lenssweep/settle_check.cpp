@@ -2,35 +2,16 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "settle_check.h"
 
-#include <cmath>
-#include <numeric>
+#include "sure_ratio.h"
+
 #include <utility>
 
 namespace {
 
-constexpr size_t least_checks = 12;
 constexpr size_t quick_checks = 24;  /* until then checks follow each other quickly */
 constexpr unsigned quick_sweeps = 2; /* from check to check */
 constexpr unsigned usual_sweeps = 50;
-constexpr double least_lag = 0.03;       /* of a step: what is less wrong than that is right */
-constexpr double least_significance = 4; /* standard errors above 0 */
-
-double mean(const std::vector<double> &values)
-{
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/* Of the mean of `changes`, if they are `lag` of the steps and what is left is chance. */
-double standard_error(const std::vector<double> &changes, const std::vector<double> &steps, double lag)
-{
-    double squares = 0;
-    for (size_t k = 0; k < changes.size(); k++) {
-        const double chance = changes[k] - lag * steps[k];
-        squares += chance * chance;
-    }
-    const auto count = static_cast<double>(changes.size());
-    return std::sqrt(squares / (count - 1) / count);
-}
+constexpr double least_lag = 0.03; /* of a step: what is less wrong than that is right */
 
 } // namespace
 
@@ -77,10 +58,6 @@ void SettleCheck::add_held(unsigned k, Sharpness sharpness)
 
 std::optional<double> SettleCheck::lag() const
 {
-    if (changes_.size() < least_checks)
-        return std::nullopt;
-    const double change = mean(changes_);
-    const double lag = change / mean(steps_);
-    const bool sure = change > least_significance * standard_error(changes_, steps_, lag);
-    return sure && lag > least_lag ? std::optional(lag) : std::nullopt;
+    const auto lag = sure_ratio(changes_, steps_);
+    return lag && *lag > least_lag ? lag : std::nullopt;
 }

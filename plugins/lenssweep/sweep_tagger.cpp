@@ -92,7 +92,7 @@ std::optional<PlaneLabel> SweepTagger::label(const FrameTrace &trace, std::optio
         return cycle_->label(trace);
     if (time_ns && sync_)
         *time_ns -= settings_.timestamp_delay_ns;
-    const auto label = step_ ? step_->label(time_ns, stop, sharpness) : sync_->label(time_ns);
+    const auto label = step_ ? step_->label(time_ns, stop, sharpness) : sync_->label(time_ns, sharpness);
     unlabelled_ = label || stop.stop_requested() ? 0 : unlabelled_ + 1;
     untimed_ = time_ns ? 0 : untimed_ + 1;
     return label;
@@ -107,6 +107,8 @@ std::string SweepTagger::warning()
             "here on. Use a source that numbers its frames or gives them times.");
     if (step_ && step_->lag())
         return tell_once(Cause::StillMoves, step_warning());
+    if (sync_ && sync_->lag())
+        return tell_once(Cause::LateLens, swing_warning(*sync_->lag()));
     if (unlabelled_ < patience_sweeps * plan_.planes() + settings_.settle_frames)
         return "";
     if (step_)
@@ -140,6 +142,18 @@ std::string SweepTagger::step_warning() const
            std::to_string(std::lround(100 * step_->lag().value_or(0))) +
            " % of what a plane changes. Set settle-frames to more than " +
            std::to_string(settings_.settle_frames) + ".";
+}
+
+std::string SweepTagger::swing_warning(std::chrono::microseconds lag) const
+{
+    const std::chrono::nanoseconds told{settings_.timestamp_delay_ns};
+    const auto right = std::max(told + lag, std::chrono::nanoseconds{0});
+    return "What is sharp in a plane on the lens's way there is sharp in another on its way back: it stands "
+           "about " +
+           std::to_string(std::abs(lag.count())) + " us " + (lag.count() > 0 ? "behind" : "before") +
+           " where frames are labelled. Let the camera be triggered that much " +
+           (lag.count() > 0 ? "later" : "earlier") + " and set timestamp-delay to " +
+           std::to_string(right.count()) + ".";
 }
 
 std::string SweepTagger::sync_warning() const

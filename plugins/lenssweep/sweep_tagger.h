@@ -30,8 +30,8 @@ public:
     void restart();
 
     /* The label of a frame, or nothing if it is to be dropped; `time_ns` is its timestamp on CLOCK_MONOTONIC.
-     * A wait for the lens ends when `stop` is requested; `sharpness` is that of the frame, as StepTagger asks
-     * for it. Throws dff::LensError and dff::LineError. */
+     * A wait for the lens ends when `stop` is requested; `sharpness` is that of the frame, as StepTagger and
+     * SyncTagger ask for it. Throws dff::LensError and dff::LineError. */
     std::optional<PlaneLabel> label(const FrameTrace &trace, std::optional<uint64_t> time_ns,
                                     const std::stop_token &stop,
                                     const std::function<StepTagger::Sharpness()> &sharpness);
@@ -52,13 +52,14 @@ public:
     int code(unsigned plane) const;
 
 private:
-    enum class Cause { LostPlace, NeverRests, StillMoves, Untimed, NoEdges, Misfit };
+    enum class Cause { LostPlace, NeverRests, StillMoves, LateLens, Untimed, NoEdges, Misfit };
 
     std::string tell_once(Cause cause, const std::string &text);
     void open_step(std::unique_ptr<dff::Lens> lens);
     void open_sync(std::unique_ptr<dff::Lens> lens);
     std::string sync_warning() const;
     std::string step_warning() const;
+    std::string swing_warning(std::chrono::microseconds lag) const;
 
     TagSettings settings_;
     dff::SweepPlan plan_;

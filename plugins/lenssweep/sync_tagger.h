@@ -3,10 +3,13 @@
 #pragma once
 
 #include "lens/lens.h"
+#include "swing_check.h"
 #include "sync_cycle.h"
 #include "trigger/lines.h"
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -21,19 +24,26 @@ public:
      * std::invalid_argument. */
     void begin(std::chrono::microseconds period);
 
-    /* The label of a frame whose exposure began then, CLOCK_MONOTONIC, or nothing if that is not sure. Throws
+    /* The label of a frame whose exposure began then, CLOCK_MONOTONIC, or nothing if that is not sure.
+     * `sharpness` is called for few frames, and may be empty for pictures that cannot be measured. Throws
      * dff::LineError, and dff::LensError when the lens has stopped by itself. */
-    std::optional<PlaneLabel> label(std::optional<uint64_t> time_ns);
+    std::optional<PlaneLabel> label(std::optional<uint64_t> time_ns,
+                                    const std::function<SwingCheck::Sharpness()> &sharpness);
 
     int code(unsigned plane) const { return lens_ ? lens_->code(plane) : -1; }
     uint64_t edges() const { return edges_; }
     std::optional<int64_t> misfit_ns() const { return cycle_.misfit_ns(); }
+
+    /* By how much a lens that goes to and fro is later than its labels, as SwingCheck tells. */
+    std::optional<std::chrono::microseconds> lag() const;
 
 private:
     std::unique_ptr<dff::EdgeLine> line_;
     std::unique_ptr<dff::SweptLens> lens_;
     dff::SweepPlan plan_;
     SyncCycle cycle_;
+    std::chrono::microseconds period_{};
+    std::optional<SwingCheck> check_; /* of a lens that goes to and fro */
     uint64_t edges_ = 0;
     unsigned unchecked_ = 0; /* frames since the lens was looked at */
 };

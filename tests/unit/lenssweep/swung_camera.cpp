@@ -62,8 +62,15 @@ void SwungCamera::stop()
 
 void SwungCamera::push(GstAppSrc *source, std::uint64_t time_ns, double current)
 {
-    GstBuffer *buffer = gst_buffer_new_allocate(nullptr, 16 * 16, nullptr);
-    gst_buffer_memset(buffer, 0, static_cast<guint8>(std::lround(std::max(current, 0.0))), 16 * 16);
+    std::vector<guint8> pixels(static_cast<size_t>(side) * side,
+                               static_cast<guint8>(std::lround(std::max(current, 0.0))));
+    for (unsigned place = 0; place < pixels.size(); place++) {
+        const double sharpest = 200.0 * place / static_cast<double>(pixels.size());
+        const double off = (current - sharpest) / 100;
+        if (place % 3 == 2)
+            pixels[place] += static_cast<guint8>(std::lround(35 / (1 + off * off)));
+    }
+    GstBuffer *buffer = gst_buffer_new_memdup(pixels.data(), pixels.size());
     GST_BUFFER_PTS(buffer) = time_ns - gst_element_get_base_time(GST_ELEMENT(source));
     gst_app_src_push_buffer(source, buffer);
 }

@@ -83,7 +83,8 @@ public:
         ASSERT_NE(pipeline.set_state(GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
         camera.shoot_into(GST_APP_SRC(pipeline.element("camera")));
         /* The lens begins with the caps, which come with a first frame. */
-        GstBuffer *first = gst_buffer_new_allocate(nullptr, 16 * 16, nullptr);
+        GstBuffer *first =
+            gst_buffer_new_allocate(nullptr, size_t{SwungCamera::side} * SwungCamera::side, nullptr);
         GST_BUFFER_PTS(first) = 0;
         gst_app_src_push_buffer(GST_APP_SRC(pipeline.element("camera")), first);
     }
@@ -116,6 +117,20 @@ void expect_labels(Swing &swing, unsigned count)
         before = {slot, focus->plane};
     }
     EXPECT_GT(neighbours, count / 2);
+}
+
+/* The text of the first warning; an error is one, too. */
+std::string first_message(Swing &swing)
+{
+    g_autoptr(GstBus) bus = gst_element_get_bus(swing.pipeline.get());
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
+        bus, patience, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));
+    g_autoptr(GError) error = nullptr;
+    if (message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING)
+        gst_message_parse_warning(message, &error, nullptr);
+    else if (message)
+        gst_message_parse_error(message, &error, nullptr);
+    return error ? error->message : "none came";
 }
 
 } // namespace
@@ -155,19 +170,27 @@ TEST(TriangleSweep, frames_between_two_planes_are_not_labelled_and_a_warning_tel
     FakeOptotune driver;
     Swing swing(driver, 0ns, 8ms, "fakesink sync=false");
     swing.play();
-    g_autoptr(GstBus) bus = gst_element_get_bus(swing.pipeline.get());
-    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
-        bus, patience, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR));
-    ASSERT_NE(message, nullptr);
-    ASSERT_EQ(GST_MESSAGE_TYPE(message), GST_MESSAGE_WARNING);
-    g_autoptr(GError) error = nullptr;
-    gst_message_parse_warning(message, &error, nullptr);
-    EXPECT_NE(std::string(error->message).find("timestamp-delay"), std::string::npos) << error->message;
+    const std::string warning = first_message(swing);
+    EXPECT_NE(warning.find("do not fit together"), std::string::npos) << warning;
+    EXPECT_NE(warning.find("timestamp-delay"), std::string::npos) << warning;
     g_autoptr(GstStructure) stats = nullptr;
     g_object_get(swing.pipeline.element("tag"), "stats", &stats, nullptr);
     guint64 labelled = 1;
     gst_structure_get_uint64(stats, "labelled", &labelled);
     EXPECT_EQ(labelled, 0U);
+}
+
+/* A fifth of a plane there, and a fifth back. */
+TEST(TriangleSweep, a_lens_that_is_later_than_was_told_is_seen_by_sharpness)
+{
+    FakeOptotune driver;
+    Swing swing(driver, 4ms, 0ms, "fakesink sync=false");
+    swing.play();
+    const std::string warning = first_message(swing);
+    EXPECT_NE(warning.find("us behind where frames are labelled"), std::string::npos) << warning;
+    const auto place = warning.find("set timestamp-delay to ");
+    ASSERT_NE(place, std::string::npos) << warning;
+    EXPECT_NEAR(std::stod(warning.substr(place + 23)), 4e6, 1.5e6) << warning;
 }
 
 TEST(TriangleSweep, stacks_have_the_nearest_plane_first_both_ways)
@@ -181,7 +204,7 @@ TEST(TriangleSweep, stacks_have_the_nearest_plane_first_both_ways)
         const Sample sample = swing.pipeline.pull("out");
         ASSERT_TRUE(sample) << swing.pipeline.wait();
         const auto bytes = bytes_of(sample.get());
-        ASSERT_GE(bytes.size(), size_t{planes} * 16 * 16);
+        ASSERT_GE(bytes.size(), size_t{planes} * SwungCamera::side * SwungCamera::side);
         for (unsigned plane = 0; plane < planes; ++plane)
             EXPECT_NEAR(bytes.at(plane * bytes.size() / planes), 200 - 100 * static_cast<int>(plane), 3);
         const auto *meta = gst_buffer_get_focal_stack_meta(gst_sample_get_buffer(sample.get()));
