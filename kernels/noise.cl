@@ -64,13 +64,16 @@ __kernel void plane_noise(__global const uchar *stack, __global const ulong2 *ro
 
 /* One work-item. The pre-blur is a Gaussian, none below a quarter of a pixel. With `is_rolling` the one
  * before is kept where no tap differs by more than 1, since the planes that have not changed were blurred by it. */
-__kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale, int is_rolling)
+__kernel void judge_noise(__global const float *sigmas, __global Noise *noise, int planes, int scale, int is_rolling,
+                          float told)
 {
     float sigma = sigmas[0], highest = sigmas[0];
     for (int z = 1; z < planes; z++) {
         sigma = min(sigma, sigmas[z]);
         highest = max(highest, sigmas[z]);
     }
+    if (told >= 0.0f)
+        sigma = highest = told;
     const float t = sigma * sigma / (sigma * sigma + 1.0f);
     noise->sigma = sigma;
     noise->t = t;

@@ -37,7 +37,8 @@ void NoiseEstimate::run(const StackBuffer &stack)
                colour_channels(shape_.format), changed, histograms_, sigmas_,
                static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), step);
     queue_.run(judge_noise_, {1}, sigmas_, noise_, static_cast<cl_int>(shape_.planes), scale_,
-               cl_int{std::popcount(changed) < static_cast<int>(shape_.planes)});
+               cl_int{std::popcount(changed) < static_cast<int>(shape_.planes)},
+               stack.noise().value_or(-1.0F));
 }
 
 } // namespace dff

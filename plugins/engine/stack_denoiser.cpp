@@ -19,7 +19,10 @@ constexpr float sigmas_of_noise = 6.0F; /* that a tile may be off, of strength 1
 constexpr unsigned mean_unit = 128;     /* of samples of 8 bits: MEAN_UNIT of the kernels */
 constexpr uint32_t enough_tiles = 8000; /* of one plane, to learn the noise from */
 constexpr float memory_of_noise = 0.8F; /* share of the curve that stays from stack to stack */
+constexpr uint32_t settled = 32;        /* stacks after which noise is learned from one in `seldom` */
+constexpr uint32_t seldom = 4;
 constexpr float most_alike = 0.2F; /* samples of a tile, of all, that say the same: more is motion of all */
+constexpr float late_memory = memory_of_noise * memory_of_noise * memory_of_noise * memory_of_noise;
 constexpr float most_over_single = 4.0F; /* noise between sweeps has at most this many times the variance that
                                             one picture shows: more is motion */
 
@@ -162,12 +165,15 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
     const uint64_t all = ~uint64_t{0} >> (64 - shape_.planes);
     const uint64_t changed = has_means_ ? tracker_.changed(view) : all;
     tracker_.remember(view);
+    learns_ = !has_means_ || stacks_ < settled || stacks_ % seldom == 0;
+    if (learns_)
+        learned_plane_ = (learned_plane_ + 1) % shape_.planes;
     translate_errors(*device_, [&] {
         queue_.begin_stage("denoise");
-        if (has_means_)
-            look_at_noise(view, learned_plane_);
-        else
+        if (!has_means_)
             begin(view);
+        else if (learns_)
+            look_at_noise(view, learned_plane_);
         upload(view, memory);
         hold(held);
         if (strips_)
@@ -177,7 +183,9 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
         bytes_.download(memory);
         times_ = queue_.finish();
     });
-    learned_plane_ = (learned_plane_ + 1) % shape_.planes;
+    if (has_means_)
+        tell_noise_left(parameters.frames);
+    stacks_++;
     has_means_ = true;
 }
 
@@ -191,6 +199,7 @@ void StackDenoiser::begin(const StackView &view)
     for (const auto &part : components_)
         part->noise = part->single();
     has_learned_ = false;
+    stacks_ = 0;
     kept_sweeps_ = 1;
     kept_variance_ = 1.0;
     left_.reset();
@@ -253,12 +262,12 @@ void StackDenoiser::upload(const StackView &view, std::span<std::byte> memory)
 
 void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
 {
-    if (has_means_) {
+    if (has_means_ && learns_) {
         std::vector<cl::Buffer> tiles;
         for (const auto &part : components_)
             tiles.push_back(part->tiles);
         strips_->measure(bytes_.buffer(), learned_plane_, learned_step(), tiles);
-        learn_noise(parameters.frames);
+        learn_noise();
     }
     std::vector<NoiseBounds> bounds;
     for (const auto &part : components_)
@@ -270,8 +279,8 @@ void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wan
 void StackDenoiser::run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
 {
     measure();
-    if (has_means_)
-        learn_noise(parameters.frames);
+    if (has_means_ && learns_)
+        learn_noise();
     judge(parameters);
     average(parameters, wanted, absent);
 }
@@ -327,8 +336,8 @@ uint32_t StackDenoiser::learned_step() const
     return std::max(static_cast<uint32_t>(tiles_a_plane()) / enough_tiles, 1U);
 }
 
-/* The tiles of one plane, which are waited for: the sweeps that each is the mean of. */
-std::vector<uint8_t> StackDenoiser::read_tiles()
+/* The tiles of one plane. */
+void StackDenoiser::read_tiles()
 {
     const size_t across = static_cast<size_t>(tiles_.s[0]), down = static_cast<size_t>(tiles_.s[1]);
     const size_t step = strips_ ? learned_step() : 1, rows = (down + step - 1) / step;
@@ -339,6 +348,13 @@ std::vector<uint8_t> StackDenoiser::read_tiles()
                                             part->host_tiles.size() * sizeof(TileDifference),
                                             part->host_tiles.data());
     }
+}
+
+/* What each of them is the mean of; waits for both. */
+std::vector<uint8_t> StackDenoiser::read_sweeps()
+{
+    const size_t across = static_cast<size_t>(tiles_.s[0]), down = static_cast<size_t>(tiles_.s[1]);
+    const size_t step = strips_ ? learned_step() : 1, rows = (down + step - 1) / step;
     std::vector<uint8_t> sweeps(tiles_a_plane());
     queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, tiles_a_plane() * learned_plane_, sweeps.size(),
                                         sweeps.data());
@@ -357,19 +373,18 @@ bool StackDenoiser::all_moved() const
     return spread_of_tiles(first.host_tiles, first.samples) > most_alike * first.samples;
 }
 
-void StackDenoiser::learn_noise(uint32_t frames)
+void StackDenoiser::learn_noise()
 {
-    const std::vector<uint8_t> sweeps = read_tiles();
-    if (all_moved()) {
-        tell_noise_left(frames, sweeps);
+    read_tiles();
+    const std::vector<uint8_t> sweeps = read_sweeps();
+    if (all_moved())
         return;
-    }
     for (const auto &part : components_) {
         const auto between = noise_of_tiles(part->host_tiles, sweeps, part->component, part->samples);
         if (!between)
             continue;
         const NoiseCurve single = part->single();
-        const float kept = has_learned_ ? memory_of_noise : 0.0F;
+        const float kept = !has_learned_ ? 0.0F : stacks_ < settled ? memory_of_noise : late_memory;
         for (size_t i = 0; i < single.size(); i++)
             part->noise[i] =
                 std::lerp(std::min((*between)[i], most_over_single * single[i]), part->noise[i], kept);
@@ -378,13 +393,13 @@ void StackDenoiser::learn_noise(uint32_t frames)
             part->spread = std::lerp(spread_of_tiles(quiet, part->samples), part->spread, kept);
     }
     has_learned_ = true;
-    tell_noise_left(frames, sweeps);
 }
 
 /* The mean m <- m + (x - m) / k of k sweeps has 1 / k of their variance; where k has come to its most and
- * stays there, less and less, down to 1 / (2 k - 1). `sweeps` are those before this stack. */
-void StackDenoiser::tell_noise_left(uint32_t frames, std::span<const uint8_t> sweeps)
+ * stays there, less and less, down to 1 / (2 k - 1). Of the plane that was learned from. */
+void StackDenoiser::tell_noise_left(uint32_t frames)
 {
+    const std::vector<uint8_t> sweeps = read_sweeps();
     const ComponentState &luma = *components_.front();
     kept_sweeps_ = std::min(kept_sweeps_ + 1, frames);
     const double share = 1.0 / kept_sweeps_;
@@ -393,7 +408,7 @@ void StackDenoiser::tell_noise_left(uint32_t frames, std::span<const uint8_t> sw
     const double unit = luma.component.sample_bytes == 2 ? 256.0 : 1.0;
     std::vector<double> variances;
     for (size_t i = 0; i < luma.host_tiles.size(); i++) {
-        const uint32_t k = std::min<uint32_t>(sweeps[i] + 1U, frames);
+        const uint32_t k = std::clamp<uint32_t>(sweeps[i], 1U, frames);
         const double part = k < frames ? 1.0 / k : std::min(kept_variance_, share);
         const auto brightness = static_cast<float>(luma.host_tiles[i].brightness / unit);
         variances.push_back(part * static_cast<double>(variance_at(luma.noise, brightness)));

@@ -71,10 +71,11 @@ private:
     void run_strips(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
     void run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
     uint32_t learned_step() const;
-    std::vector<uint8_t> read_tiles();
+    void read_tiles();
+    std::vector<uint8_t> read_sweeps();
     bool all_moved() const;
-    void learn_noise(uint32_t frames);
-    void tell_noise_left(uint32_t frames, std::span<const uint8_t> sweeps);
+    void learn_noise();
+    void tell_noise_left(uint32_t frames);
     template <typename... Arguments> void enqueue_tiles(cl::Kernel &kernel, const Arguments &...arguments);
     size_t tiles_a_plane() const
     {
@@ -97,7 +98,9 @@ private:
     uint32_t kept_sweeps_ = 1;   /* since begin(), at most `frames` */
     double kept_variance_ = 1.0; /* of their mean, of one sweep's */
     std::optional<double> left_; /* DenoiseReport::left */
-    uint32_t learned_plane_ = 0; /* which tells of noise in this stack */
+    uint64_t stacks_ = 0;        /* since begin() */
+    bool learns_ = true;         /* noise, from this stack */
+    uint32_t learned_plane_ = 0; /* which told of noise last */
     StageTimes times_;
 };
 

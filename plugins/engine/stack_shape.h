@@ -69,6 +69,10 @@ struct StackView {
 
     /* Of this memory, where other engines get the same stack; nullptr: each engine uploads it. */
     std::shared_ptr<SharedUpload> upload = nullptr;
+
+    /* Standard deviation of the noise of its luma, of 255, where that is known better than from the stack
+     * itself, and the same in all planes. */
+    std::optional<float> noise = {};
 };
 
 /* Whether the layout has a place for each component of each plane, and all of it lies in the memory. */

@@ -41,6 +41,7 @@
 #include "focalstack/focalstackalign.h"
 
 #include "common/stack_clock.h"
+#include "common/stack_noise.h"
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/brightness_evener.h"
@@ -249,6 +250,7 @@ GstFlowReturn prepare_output_buffer(GstBaseTransform *base, GstBuffer *input, Gs
         return GST_FLOW_ERROR;
     }
     GST_BASE_TRANSFORM_GET_CLASS(base)->copy_metadata(base, input, stack.get());
+    dff::tell_stack_noise(stack.get(), std::nullopt); /* planes that are warped have less */
     *output = stack.release();
     return GST_FLOW_OK;
 }

@@ -12,6 +12,10 @@
  * the noise of the sensor, as a curve over brightness that the element finds in the pictures themselves and
  * tells in `stats`. Planes that were lost or repeat another's picture are left as they are.
  *
+ * The noise that is left goes with each stack whose planes have it alike, from the second one on: a
+ * GstCustomMeta by the name GstFocalStackNoiseMeta, whose field "luma" (double) is the standard deviation of
+ * luma where white is 255. dffdepth and aifcompose believe it.
+ *
  * A sweep takes time, and what moves meanwhile is in another place in each plane: depth and picture have
  * ghosts around it. With `local-motion` each plane is changed to what it would show in the middle of the
  * sweep, (planes - 1) / 2 planes after the first one: objects are followed along their path, and what they
@@ -31,6 +35,7 @@
  */
 #include "focalstack/focalstackdenoise.h"
 
+#include "common/stack_noise.h"
 #include "focalstack/sweep_follower.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
@@ -149,10 +154,9 @@ void ensure_denoiser(GstFocalStackDenoise *self)
                     state.info->planes, state.device->name().c_str());
 }
 
-void account(GstFocalStackDenoise *self, GstClockTime compute_time, bool is_first)
+void account(GstFocalStackDenoise *self, dff::DenoiseReport report, GstClockTime compute_time, bool is_first)
 {
     FocalStackDenoiseState &state = *self->state;
-    dff::DenoiseReport report = state.denoiser->report();
     GST_DEBUG_OBJECT(self, "%.1f sweeps averaged, in %" GST_TIME_FORMAT, report.mean_sweeps,
                      GST_TIME_ARGS(compute_time));
     bool is_slower = false;
@@ -217,8 +221,13 @@ void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
     if (is_first)
         progress.emplace(GST_ELEMENT(self));
     ensure_denoiser(self);
-    denoise_stack(state, WritableStack(*state.info, buffer, *state.device), absent_planes(buffer));
-    account(self, static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND, is_first);
+    const guint64 absent = absent_planes(buffer);
+    denoise_stack(state, WritableStack(*state.info, buffer, *state.device), absent);
+    dff::DenoiseReport report = state.denoiser->report();
+    /* Planes that are noisier than the others would pass for sharper ones. */
+    dff::tell_stack_noise(buffer, absent == 0 ? report.left : std::nullopt);
+    account(self, std::move(report),
+            static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND, is_first);
 }
 
 GstFlowReturn transform_ip(GstBaseTransform *base, GstBuffer *buffer)

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/mapped_stack.h"
 
+#include "common/stack_noise.h"
 #include "gstcl/stack_upload.h"
 
 #include <stdexcept>
@@ -81,6 +82,7 @@ MappedStack::MappedStack(const GstFocalStackInfo &info, GstBuffer *buffer, const
     view_.shape = stack_shape(info);
     view_.layout = locate_planes(info, buffer);
     view_.identities = identify_planes(info, buffer);
+    view_.noise = stack_noise(buffer);
     if (!device.works_in_place())
         view_.upload = shared_upload(buffer);
     if (!gst_buffer_map(buffer, &map_, GST_MAP_READ))

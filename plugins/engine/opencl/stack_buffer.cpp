@@ -61,6 +61,7 @@ void StackBuffer::assign(const StackView &view)
     const std::shared_ptr<cl::Buffer> shared = upload_shared(view);
     bytes_ = shared ? *shared : own_.upload(view.memory);
     changed_planes_ = tracker_.changed(view);
+    noise_ = view.noise;
     tracker_.forget();
     if (view.layout != host_layout_) {
         host_layout_ = view.layout;

@@ -38,6 +38,9 @@ public:
     /* All that was asked of the stack in `view`, the last one assigned, has been computed. */
     void remember(const StackView &view) { tracker_.remember(view); }
 
+    /* StackView::noise */
+    std::optional<float> noise() const { return noise_; }
+
     const StackShape &shape() const { return shape_; }
     const cl::Buffer &bytes() const { return bytes_; }
 
@@ -49,6 +52,7 @@ private:
 
     CommandQueue &queue_;
     StackShape shape_;
+    std::optional<float> noise_;
     std::vector<RowLayout> host_layout_;
     PlaneTracker tracker_;
     uint64_t changed_planes_ = ~uint64_t{0};

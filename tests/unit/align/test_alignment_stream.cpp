@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "align_test.h"
+#include "common/stack_noise.h"
 
 TEST_F(FocalStackAlign, times_and_metas_stay)
 {
@@ -19,6 +20,7 @@ TEST_F(FocalStackAlign, times_and_metas_stay)
     gst_focal_stack_meta_set_focus(meta, 1, &focus);
     const Owned<GstCaps> clock(gst_caps_new_empty_simple("timestamp/x-camera"));
     gst_buffer_add_reference_timestamp_meta(stack, clock.get(), 123, 456);
+    dff::tell_stack_noise(stack, 3.0);
 
     const Owned<GstBuffer> aligned = align(stack);
     EXPECT_EQ(GST_BUFFER_PTS(aligned.get()), 5 * GST_SECOND);
@@ -33,6 +35,7 @@ TEST_F(FocalStackAlign, times_and_metas_stay)
     const auto *time = gst_buffer_get_reference_timestamp_meta(aligned.get(), clock.get());
     ASSERT_NE(time, nullptr);
     EXPECT_EQ(time->timestamp, 123u);
+    EXPECT_FALSE(dff::stack_noise(aligned.get())); /* resampled planes have less than the others */
     EXPECT_EQ(gst_buffer_get_n_meta(aligned.get(), GST_VIDEO_META_API_TYPE), planes);
 }
 

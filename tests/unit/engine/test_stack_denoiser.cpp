@@ -333,6 +333,21 @@ TEST_P(Formats, a_cut_shows_the_new_scene_alone)
     EXPECT_EQ(stack.memory, cut.memory);
 }
 
+/* Later on, noise is looked at less often. */
+TEST(StackDenoiser, noise_that_changes_late_is_told)
+{
+    const StackShape shape{PixelFormat::Gray8, 320, 240, 2};
+    const TestStack clean = smooth_stack(shape);
+    StackDenoiser denoiser(Device::open(""), shape);
+    for (unsigned t = 0; t < 64; t++) {
+        TestStack stack = noisy(clean, t < 40 ? 3.0 : 6.0, t);
+        denoise(denoiser, stack);
+    }
+    const DenoiseReport report = denoiser.report();
+    EXPECT_NEAR(std::sqrt(report.noise.front()[8]), 6.0, 0.9);
+    EXPECT_GT(report.mean_sweeps, 7.0);
+}
+
 /* What all of the picture does from the first sweep on is not learned as noise. */
 TEST_P(Formats, a_camera_that_pans_leaves_no_ghost)
 {

@@ -14,6 +14,30 @@ TEST_P(VolumeStages, evidence_agrees_with_its_twins)
     expect_cost_volume();
 }
 
+/* Whoever has averaged sweeps knows it better than one stack shows it. */
+TEST(NoiseEstimate, what_is_told_is_believed)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 4};
+    const TestStack stack(shape);
+    CommandQueue queue(Device::open(""));
+    StackBuffer buffer(queue, shape);
+    NoiseEstimate estimate(queue, shape, 2);
+    const auto sigma = [&](std::optional<float> told) {
+        StackView view = stack.view();
+        view.noise = told;
+        buffer.assign(view);
+        estimate.run(buffer);
+        NoiseEstimate::Noise noise{};
+        queue.commands().enqueueReadBuffer(estimate.noise(), CL_TRUE, 0, sizeof noise, &noise);
+        EXPECT_FLOAT_EQ(noise.t, noise.sigma * noise.sigma / (noise.sigma * noise.sigma + 1.0F));
+        return noise.sigma;
+    };
+    const float alone = sigma(std::nullopt);
+    EXPECT_FLOAT_EQ(sigma(2.5F), 2.5F);
+    EXPECT_FLOAT_EQ(sigma(0.0F), 0.0F);
+    EXPECT_FLOAT_EQ(sigma(std::nullopt), alone);
+}
+
 TEST_P(VolumeStages, decision_agrees_with_its_twins)
 {
     run_to_matching();

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
+#include "common/stack_noise.h"
 #include "support.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gst/video/video.h>
 #include <gtest/gtest.h>
 #include <random>
@@ -125,6 +127,26 @@ TEST_F(FocalStackDenoise, noise_falls_and_stats_tell_it)
     const GValue *curve = gst_structure_get_value(stats.get(), "noise");
     ASSERT_EQ(gst_value_array_get_size(curve), 16U);
     EXPECT_NEAR(g_value_get_double(gst_value_array_get_value(curve, 6)), 5.0, 0.8);
+}
+
+/* What dffdepth believes. Of a stack whose planes are not equally noisy nothing is told. */
+TEST_F(FocalStackDenoise, the_noise_that_is_left_goes_with_each_stack)
+{
+    start("GRAY8");
+    const auto told = [](GstBuffer *stack) {
+        const auto noise = dff::stack_noise(stack);
+        return noise.value_or(-1.0);
+    };
+    EXPECT_EQ(told(denoised(100, 1).get()), -1.0);
+    for (unsigned sweep = 2; sweep < 6; sweep++)
+        EXPECT_NEAR(told(denoised(100, sweep).get()), 5.0 / std::sqrt(sweep), 0.8) << "sweep " << sweep;
+
+    GstBuffer *stack = new_stack(info_, next_++, 100, 6);
+    gst_buffer_get_focal_stack_meta(stack)->missing = 2;
+    gst_harness_push(harness_.get(), stack);
+    EXPECT_EQ(told(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get()), -1.0);
+
+    EXPECT_NEAR(told(denoised(180, 7).get()), 5.0, 0.8) << "after a cut";
 }
 
 TEST_F(FocalStackDenoise, a_stack_that_somebody_else_holds_is_not_changed)
