@@ -3,13 +3,17 @@
  *
  * How much of each plane the all-in-focus picture of sharp_blend.cl takes, in every band of detail. At level l >= 1
  *
- *     w_z = max(1 - |z - u| / REACH, 0) * (D_z / max D)^32,   D_z = binomial_5x5(max_5x5(F_z)) + FLOOR
+ *     w_z = max(1 - |z - u| / REACH, 0) * ((D_z + FLOOR) / max (D + FLOOR))^32,
+ *     D_l = max(binomial_5x5(max_5x5(F_l)), up(D_l+1) / 2)
  *
- * F at level 1 is the mean of 2 x 2 gradients of luma, at the levels above the greatest of 2 x 2. The sharpest edge
- * around decides, and the farther around the coarser the band: the skirt of a blurred edge is as wide as the bands that
- * it shows in, and would win beside the edge itself. In the finest band, that of single pixels, it hardly shows; its
- * weights lie in cells of level 1 too, with max_3x3 instead of max_5x5 and the 64th power, since neighbouring planes
- * differ by little.
+ * F at level 1 is of 2 x 2 gradients of luma three parts their mean and one the greatest, since of a line that lies
+ * between two cells either has but half; at the levels above it is the greatest of 2 x 2. The sharpest edge around
+ * decides, and the farther around the coarser the band: the skirt of a blurred edge is as wide as the bands that it
+ * shows in, and would win beside the edge itself. Twice as far away an edge counts half, as the skirt that it may have
+ * in another plane has half the slope: where that is wider than the squares, bands of different planes would add up
+ * to a dark rim. In the finest band, that of single pixels, it hardly shows; its weights lie in cells of level 1 too,
+ * with max_3x3 instead of max_5x5, nothing of the level above and the 64th power, since neighbouring planes differ by
+ * little.
  *
  * u is the plane position of the depth, the nearest of the pixels that have one; without any, every plane has the first
  * factor 1. Where nothing is sharp all D are alike and the planes are averaged.
@@ -61,13 +65,19 @@ INLINE ushort16 half_of(ushort16 a, ushort16 b)
     return (a + b) >> (ushort16)1;
 }
 
-/* Means over two rows of the gradient's magnitude at 16 pixels. */
-INLINE ushort16 gradients(__global const LUMA *const *rows, int x, int width)
+/* Of the gradient's magnitude in two rows at 16 pixels. */
+typedef struct {
+    ushort16 mean, greatest;
+} Gradients;
+
+INLINE Gradients gradients(__global const LUMA *const *rows, int x, int width)
 {
     Along lines[4];
     for (int i = 0; i < 4; i++)
         lines[i] = along(rows[i], x, width);
-    return half_of(magnitude(lines[0], lines[1], lines[2]), magnitude(lines[1], lines[2], lines[3]));
+    const ushort16 upper = magnitude(lines[0], lines[1], lines[2]), lower = magnitude(lines[1], lines[2], lines[3]);
+    const Gradients found = {half_of(upper, lower), max(upper, lower)};
+    return found;
 }
 
 /* F of level 1. */
@@ -80,9 +90,12 @@ __kernel void sharpness(__global const uchar *stack, __global const ulong2 *tabl
     __global const LUMA *rows[4];
     for (int i = 0; i < 4; i++)
         rows[i] = (__global const LUMA *)(stack + table[z].x + table[z].y * (ulong)clamp(2 * y - 1 + i, 0, size.y - 1));
-    const ushort16 left = gradients(rows, 2 * x, size.x), right = gradients(rows, 2 * x + 16, size.x);
-    const ushort16 means = half_of((ushort16)(left.even, right.even), (ushort16)(left.odd, right.odd));
-    store_cells(volume + row_of(level, z, y), x, level.width, means);
+    const Gradients left = gradients(rows, 2 * x, size.x), right = gradients(rows, 2 * x + 16, size.x);
+    const ushort16 mean =
+        half_of((ushort16)(left.mean.even, right.mean.even), (ushort16)(left.mean.odd, right.mean.odd));
+    const ushort16 greatest = max((ushort16)(left.greatest.even, right.greatest.even),
+                                  (ushort16)(left.greatest.odd, right.greatest.odd));
+    store_cells(volume + row_of(level, z, y), x, level.width, mean + ((greatest - mean) >> (ushort16)2));
 }
 
 /* The 32 cells of level l that 16 of level l + 1 lie over, in two rows: what `better` leaves of each four. */
@@ -130,12 +143,26 @@ __kernel void greatest_of_three(__global const ushort *volume, __global ushort *
 }
 
 /* Weights 1 4 6 4 1; F has at most 22440. */
+INLINE ushort16 softened(const ushort16 *cells)
+{
+    const ushort16 outer = half_of(cells[0], cells[4]), inner = half_of(cells[1], cells[3]);
+    const ushort16 rest = half_of(outer, cells[2]); /* 1 of 4, 1 and 2; inner is 2 of 4 */
+    return half_of(half_of(rest, cells[2]), inner);
+}
+
 __kernel void soften(__global const ushort *volume, __global ushort *result, Level level, int2 step)
 {
     FIVE_CELLS;
-    const ushort16 outer = half_of(cells[0], cells[4]), inner = half_of(cells[1], cells[3]);
-    const ushort16 rest = half_of(outer, cells[2]); /* 1 of 4, 1 and 2; inner is 2 of 4 */
-    store_cells(result + row_of(level, z, y), x, level.width, half_of(half_of(rest, cells[2]), inner));
+    store_cells(result + row_of(level, z, y), x, level.width, softened(cells));
+}
+
+/* And at least half of what the level above has there. */
+__kernel void soften_upon(__global const ushort *volume, __global ushort *result, Level level, int2 step,
+                          __global const ushort *above, Level coarse)
+{
+    FIVE_CELLS;
+    const ushort16 least = convert_ushort16(0.5f * upsampled(above, coarse_rows(coarse, z, x, y)));
+    store_cells(result + row_of(level, z, y), x, level.width, max(softened(cells), least));
 }
 
 /* The nearest depth of 2 x 2 pixels, less 1: none is 65535. */

@@ -36,6 +36,7 @@ SharpWeights::SharpWeights(CommandQueue &queue, const StackShape &shape, const P
     greatest_of_three_ = program.kernel("greatest_of_three");
     greatest_of_five_ = program.kernel("greatest_of_five");
     soften_ = program.kernel("soften");
+    soften_upon_ = program.kernel("soften_upon");
     nearest_of_pixels_ = program.kernel("nearest_of_pixels");
     weigh_ = program.kernel("weigh");
     for (size_t l = 1; l < weights_.size(); l++) {
@@ -79,20 +80,47 @@ void SharpWeights::run(const StackBuffer &stack, const cl::Buffer &depth, size_t
     }
 
     queue_.begin_stage("weights");
-    weigh(0, 1, greatest_of_three_, squarings_of_finest);
-    for (size_t l = 1; l < weights_.size(); l++)
-        weigh(l, l, greatest_of_five_, squarings_of_bands);
+    weigh_finest();
+    for (size_t l = PyramidShape::top; l > 0; l--)
+        weigh_band(l);
 }
 
-void SharpWeights::weigh(size_t band, size_t l, cl::Kernel &dilate, cl_int squarings)
+void SharpWeights::weigh_finest()
+{
+    const PyramidShape::Level &level = pyramid_.levels[1];
+    const cl::Buffer &rows = dilate(1, greatest_of_three_), &around = spread_[1];
+    queue_.run(soften_, level.blocks(shape_.planes), rows, around, level, along_column);
+    weigh(0, 1, around, squarings_of_finest);
+}
+
+void SharpWeights::weigh_band(size_t l)
 {
     const PyramidShape::Level &level = pyramid_.levels[l];
     const cl::NDRange blocks = level.blocks(shape_.planes);
-    queue_.run(dilate, blocks, sharpness_[l], spread_[0], level, along_row);
-    queue_.run(dilate, blocks, spread_[0], spread_[1], level, along_column);
+    const cl::Buffer &rows = dilate(l, greatest_of_five_), &around = sharpness_[l];
+    if (l == PyramidShape::top)
+        queue_.run(soften_, blocks, rows, around, level, along_column);
+    else
+        queue_.run(soften_upon_, blocks, rows, around, level, along_column, sharpness_[l + 1],
+                   pyramid_.levels[l + 1]);
+    weigh(l, l, around, squarings_of_bands);
+}
+
+/* Softened along rows alone. */
+const cl::Buffer &SharpWeights::dilate(size_t l, cl::Kernel &greatest)
+{
+    const PyramidShape::Level &level = pyramid_.levels[l];
+    const cl::NDRange blocks = level.blocks(shape_.planes);
+    queue_.run(greatest, blocks, sharpness_[l], spread_[0], level, along_row);
+    queue_.run(greatest, blocks, spread_[0], spread_[1], level, along_column);
     queue_.run(soften_, blocks, spread_[1], spread_[0], level, along_row);
-    queue_.run(soften_, blocks, spread_[0], spread_[1], level, along_column);
-    queue_.run(weigh_, level.blocks(), spread_[1], nearest_[l], positions_, weights_[band], level,
+    return spread_[0];
+}
+
+void SharpWeights::weigh(size_t band, size_t l, const cl::Buffer &around, cl_int squarings)
+{
+    const PyramidShape::Level &level = pyramid_.levels[l];
+    queue_.run(weigh_, level.blocks(), around, nearest_[l], positions_, weights_[band], level,
                static_cast<cl_int>(shape_.planes), squarings);
 }
 

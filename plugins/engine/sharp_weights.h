@@ -48,15 +48,19 @@ private:
     /* One buffer a level; of level 0 there are weights alone. */
     using Buffers = std::array<cl::Buffer, PyramidShape::top + 1>;
 
-    void weigh(size_t band, size_t level, cl::Kernel &dilate, cl_int squarings);
+    void weigh_finest();
+    void weigh_band(size_t level);
+    const cl::Buffer &dilate(size_t level, cl::Kernel &greatest);
+    void weigh(size_t band, size_t level, const cl::Buffer &around, cl_int squarings);
 
     CommandQueue &queue_;
     StackShape shape_;
     PyramidShape pyramid_;
     Luma luma_;
     cl::Kernel measure_, greatest_of_four_, least_of_four_, greatest_of_three_, greatest_of_five_, soften_,
-        nearest_of_pixels_, weigh_;
-    Buffers sharpness_, nearest_, weights_;
+        soften_upon_, nearest_of_pixels_, weigh_;
+    Buffers sharpness_; /* F, and when the level's weights are made D */
+    Buffers nearest_, weights_;
     std::array<cl::Buffer, 2> spread_; /* of the level at work */
     cl::Buffer positions_;
 };

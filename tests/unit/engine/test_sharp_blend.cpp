@@ -133,6 +133,46 @@ TEST(SharpBlend, bright_bars_have_no_halo_where_the_depth_follows_their_blur)
     EXPECT_LE(worst, 8.0);
 }
 
+/* Where the skirt that a bright shape has in a far plane is wider than what a band looked at, bands of
+ * different planes added up to a dark rim. */
+TEST(SharpBlend, what_lies_beside_a_bright_shape_is_no_darker)
+{
+    const auto block = [](unsigned x, unsigned y) {
+        return x > 100 && x < 156 && y > 100 && y < 156 ? 220.0 : 30.0;
+    };
+    const TestStack stack = blurred_planes(block, 2);
+    const std::vector<uint16_t> depth(side * side, DepthEncoder::index(plane_count).encode(2.0));
+    const std::vector<std::byte> picture = compose(stack, depth);
+
+    double darkest = 255.0;
+    for (const std::byte pixel : picture)
+        darkest = std::min(darkest, static_cast<double>(pixel));
+    EXPECT_GE(darkest, 30.0 - 3.0);
+}
+
+/* Cells are 2 pixels wide: an edge between two of them once seemed no sharper than where it is blurred. */
+TEST(SharpBlend, edges_are_as_sharp_wherever_they_lie)
+{
+    for (unsigned offset = 0; offset < 4; offset++) {
+        const auto step = [&](int x) { return x / 40 % 2 ? 220.0 : 30.0; };
+        TestStack stack({PixelFormat::Gray8, side, side, 3});
+        for (unsigned z = 0; z < 3; z++) /* blurred by a box of 3 pixels in the first and the last */
+            for (unsigned i = 0; i < side * side; i++) {
+                const int x = static_cast<int>(i % side + offset), reach = z == 1 ? 0 : 1;
+                stack.memory[stack.layout[z].offset + i] =
+                    static_cast<std::byte>(std::lround((step(x - reach) + step(x) + step(x + reach)) / 3.0));
+            }
+        const std::vector<uint16_t> depth(side * side, DepthEncoder::index(3).encode(1.0));
+        const std::vector<std::byte> picture = compose(stack, depth);
+
+        double worst = 0.0;
+        for (unsigned i = 0; i < side * side; i++)
+            worst = std::max(
+                worst, std::abs(static_cast<double>(picture[i]) - stack.sample(0, i % side, i / side, 1)));
+        EXPECT_LE(worst, 8.0) << offset;
+    }
+}
+
 class SharpStacks : public testing::TestWithParam<StackShape> {};
 
 TEST_P(SharpStacks, agree_with_their_twin)

@@ -84,6 +84,15 @@ Picture softened(const Picture &sharpness)
     });
 }
 
+/* A level's cell (x, y) from the next level. */
+double upsampled(const Picture &coarse, int x, int y)
+{
+    const int beside_x = x % 2 ? x / 2 + 1 : x / 2 - 1, beside_y = y % 2 ? y / 2 + 1 : y / 2 - 1;
+    return 0.5625 * coarse.at(x / 2, y / 2) +
+           0.1875 * (coarse.at(beside_x, y / 2) + coarse.at(x / 2, beside_y)) +
+           0.0625 * coarse.at(beside_x, beside_y);
+}
+
 /* The nearest of four positions that are known. */
 double nearest_of(const Picture &positions, int x, int y)
 {
@@ -115,46 +124,66 @@ std::vector<double> weights_at(const Planes &sharpness, double u, double power, 
     return weights;
 }
 
-/* Weights of every plane, by the sharpness as many cells around. */
-Planes band_weights(const Planes &sharpness, const Picture &u, int radius, double power)
+/* The sharpness as many cells around, of every plane. */
+Planes around(const Planes &sharpness, int radius)
 {
-    Planes around;
+    Planes result;
     for (const Picture &f : sharpness)
-        around.push_back(softened(dilated(f, radius)));
+        result.push_back(softened(dilated(f, radius)));
+    return result;
+}
+
+/* Weights of every plane. */
+Planes band_weights(const Planes &around, const Picture &u, double power)
+{
     std::vector<std::vector<double>> cells;
     for (int y = 0; y < u.height(); y++)
         for (int x = 0; x < u.width(); x++)
             cells.push_back(weights_at(around, u.at(x, y), power, x, y));
     Planes result;
-    for (size_t z = 0; z < sharpness.size(); z++)
+    for (size_t z = 0; z < around.size(); z++)
         result.push_back(u.like([&](int x, int y) { return cells[y * u.width() + x][z]; }));
     return result;
+}
+
+/* Of level 1. */
+Picture sharpness_of(const Picture &luma)
+{
+    return luma.half([&](int x, int y) {
+        const double a = gradient(luma, x, y), b = gradient(luma, x + 1, y), c = gradient(luma, x, y + 1),
+                     d = gradient(luma, x + 1, y + 1);
+        return 0.75 * (a + b + c + d) / 4.0 + 0.25 * std::max({a, b, c, d});
+    });
 }
 
 /* Weights of every band; those of the finest one lie in cells of level 1. */
 std::vector<Planes> weights(const Volume &luma, const std::vector<double> &positions)
 {
     const int width = static_cast<int>(luma.width), height = static_cast<int>(luma.height);
-    Planes sharpness;
-    for (unsigned z = 0; z < luma.planes; z++) {
-        const Picture plane(width, height, [&](int x, int y) { return luma.at(x, y, z); });
-        sharpness.push_back(plane.half([&](int x, int y) {
-            return (gradient(plane, x, y) + gradient(plane, x + 1, y) + gradient(plane, x, y + 1) +
-                    gradient(plane, x + 1, y + 1)) /
-                   4.0;
-        }));
-    }
-    const Picture pixels(width, height, [&](int x, int y) { return positions[y * width + x]; });
-    Picture u = pixels.half([&](int x, int y) { return nearest_of(pixels, x, y); });
-
-    std::vector<Planes> result{band_weights(sharpness, u, 1, 64.0)};
-    for (int level = 1; level <= top_level; level++) {
-        result.push_back(band_weights(sharpness, u, 2, 32.0));
-        u = u.half([&](int x, int y) { return nearest_of(u, x, y); });
-        for (Picture &f : sharpness)
-            f = f.half([&](int x, int y) {
+    std::vector<Planes> sharpness(top_level + 1);
+    for (unsigned z = 0; z < luma.planes; z++)
+        sharpness[1].push_back(
+            sharpness_of(Picture(width, height, [&](int x, int y) { return luma.at(x, y, z); })));
+    for (int level = 2; level <= top_level; level++)
+        for (const Picture &f : sharpness[level - 1])
+            sharpness[level].push_back(f.half([&](int x, int y) {
                 return std::max({f.at(x, y), f.at(x + 1, y), f.at(x, y + 1), f.at(x + 1, y + 1)});
-            });
+            }));
+    const Picture pixels(width, height, [&](int x, int y) { return positions[y * width + x]; });
+    std::vector<Picture> u{pixels};
+    for (int level = 1; level <= top_level; level++)
+        u.push_back(u.back().half([&](int x, int y) { return nearest_of(u.back(), x, y); }));
+
+    std::vector<Planes> result(top_level + 1);
+    result[0] = band_weights(around(sharpness[1], 1), u[1], 64.0);
+    Planes above;
+    for (int level = top_level; level > 0; level--) {
+        Planes here = around(sharpness[level], 2);
+        for (size_t z = 0; z < above.size(); z++)
+            here[z] = here[z].like(
+                [&](int x, int y) { return std::max(here[z].at(x, y), 0.5 * upsampled(above[z], x, y)); });
+        result[level] = band_weights(here, u[level], 32.0);
+        above = here;
     }
     return result;
 }
@@ -169,15 +198,6 @@ Picture shrunk(const Picture &picture)
                 sum += weights[i] * weights[j] * picture.at(x - 1 + i, y - 1 + j);
         return sum;
     });
-}
-
-/* A level's cell (x, y) from the next level. */
-double upsampled(const Picture &coarse, int x, int y)
-{
-    const int beside_x = x % 2 ? x / 2 + 1 : x / 2 - 1, beside_y = y % 2 ? y / 2 + 1 : y / 2 - 1;
-    return 0.5625 * coarse.at(x / 2, y / 2) +
-           0.1875 * (coarse.at(beside_x, y / 2) + coarse.at(x / 2, beside_y)) +
-           0.0625 * coarse.at(beside_x, beside_y);
 }
 
 /* One channel of a component whose samples are the cells of level `first`. */
