@@ -7,6 +7,9 @@
  *
  *     u <- u + (1 - .6t) (v - u)   where it opens upwards and lies within half a plane of u
  *
+ * Where planes differ by less blur than even the finest scale shows, k and its neighbour are equally sharp wherever u lies
+ * between them, and v would lie half way: there the planes are k - apart, k, k + apart.
+ *
  * Where depth steps by more than a plane around, as far as H is blurred, H mixes two surfaces: there v must lie within a
  * quarter of a plane.
  *
@@ -27,7 +30,7 @@ INLINE float coarser_at(__global const short *focus, float x, float y, int heigh
     return mix(start, end, y - top);
 }
 
-INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, float16 middle, float16 most, float floor, float t)
+INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, float16 middle, int apart, float16 most, float floor, float t)
 {
     const float most_floor = 0.8f + 0.2f * t, trust = 1.0f - 0.6f * t;
     const float16 own_floor = min(most_floor * min(min(before, here), after), floor);
@@ -35,7 +38,7 @@ INLINE float16 refined(float16 u, float16 before, float16 here, float16 after, f
     const float16 a = highest / max(before - own_floor, least), b = highest / max(here - own_floor, least),
                   c = highest / max(after - own_floor, least);
     const float16 bend = a - 2.0f * b + c;
-    const float16 vertex = middle + 0.5f * (a - c) / max(bend, 1e-4f);
+    const float16 vertex = middle + 0.5f * apart * (a - c) / max(bend, 1e-4f);
     const int16 is_one = bend > 1e-4f && fabs(vertex - u) <= most;
     return is_one ? u + trust * (vertex - u) : u;
 }
@@ -58,38 +61,34 @@ INLINE float16 most_way(__global const float *u, int x, int y, int spacing, int 
 
 /* placed: u so moved, its sides mirrored; focus: of a scale `factor` times as coarse. Work-items (1, low height). */
 __kernel void refine(__global const short *focus, __global const float *floor, __global const Noise *noise,
-                     __global const float *u, __global float *placed, int factor, int width, int stride, int planes, int focus_height, int focus_stride)
+                     __global const float *u, __global float *placed, int factor, int apart, int width, int stride, int planes, int focus_height, int focus_stride)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1), spacing = min(2 * factor, 8);
     const size_t row = (size_t)y * stride + SIDE, plane = (size_t)focus_height * focus_stride;
     for (int x = 0; x < width; x += 16) {
         const float16 position = READ_WIDE(u + row + x);
-        const float16 middle = clamp(rint(position), 1.0f, planes - 2.0f);
+        const float16 middle = clamp(rint(position), (float16)(float)apart, (float16)(float)(planes - 1 - apart));
         float16 before = 0.0f, here = 0.0f, after = 0.0f;
         if (factor == 1) {
             __global const short *cells = focus + row + x;
-            float16 last = READ_WIDE_SHORTS(cells), current = READ_WIDE_SHORTS(cells + plane);
-            for (int z = 1; z < planes - 1; z++) {
-                const float16 next = READ_WIDE_SHORTS(cells + (z + 1) * plane);
-                const int16 is_it = middle == (float16)(float)z;
-                before = is_it ? last : before;
-                here = is_it ? current : here;
-                after = is_it ? next : after;
-                last = current;
-                current = next;
+            for (int z = 0; z < planes; z++) {
+                const float16 current = READ_WIDE_SHORTS(cells + z * plane), beyond = (float16)(float)z - middle;
+                before = beyond == (float16)(float)-apart ? current : before;
+                here = beyond == (float16)0.0f ? current : here;
+                after = beyond == (float16)(float)apart ? current : after;
             }
         } else {
             float lanes[3][16], middles[16];
             vstore16(middle, 0, middles);
             for (int i = 0; i < 16; i++)
                 for (int k = 0; k < 3; k++)
-                    lanes[k][i] = coarser_at(focus + ((size_t)middles[i] + k - 1) * plane, (min(x + i, width - 1) + 0.5f) / factor - 0.5f,
+                    lanes[k][i] = coarser_at(focus + ((size_t)middles[i] + (k - 1) * apart) * plane, (min(x + i, width - 1) + 0.5f) / factor - 0.5f,
                                              (y + 0.5f) / factor - 0.5f, focus_height, focus_stride);
             before = vload16(0, lanes[0]);
             here = vload16(0, lanes[1]);
             after = vload16(0, lanes[2]);
         }
-        WIDE(placed + row + x) = clamp(refined(position, before, here, after, middle, most_way(u, x, y, spacing, height, stride), *floor, noise->t), 0.0f, planes - 1.0f);
+        WIDE(placed + row + x) = clamp(refined(position, before, here, after, middle, apart, most_way(u, x, y, spacing, height, stride), *floor, noise->t), 0.0f, planes - 1.0f);
     }
     mirror_ends(placed + row, width);
 }

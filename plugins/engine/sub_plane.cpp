@@ -6,6 +6,12 @@
 
 namespace dff {
 
+namespace {
+
+constexpr float least_blur = 1.6f; /* pixels between planes, or else every other one is compared */
+
+} // namespace
+
 SubPlane::SubPlane(CommandQueue &queue, const LowShape &low)
     : queue_(queue), low_(low), least_(low.allocate(queue, 1)), placed_(low.allocate(queue, 1)),
       floor_(queue.allocate(sizeof(cl_float)))
@@ -34,11 +40,12 @@ void SubPlane::run(const cl::Buffer &u, const FocusVolume &focus, const FocusPyr
         volume = &level.focus;
         shape = level.shape;
     }
+    const cl_int apart = blur_step < least_blur && low_.planes >= 5 ? 2 : 1;
     queue_.begin_stage("sub-plane");
     queue_.run(find_least_, shape.rows(), *volume, least_, shape.width, shape.stride, shape.planes);
     queue_.run(quantile_, {1}, least_, floor_, 0.1f, 1.0f, shape.width, shape.height, shape.stride);
     queue_.run(refine_, low_.rows(), *volume, floor_, noise.noise(), u, placed_, shape.scale / low_.scale,
-               low_.width, low_.stride, low_.planes, shape.height, shape.stride);
+               apart, low_.width, low_.stride, low_.planes, shape.height, shape.stride);
     queue_.run(even_out_, low_.rows(), placed_, u, low_.width, low_.stride);
 }
 

@@ -132,15 +132,18 @@ void VolumeStages::expect_sub_plane()
     if (shape.planes < 3)
         return;
     const Volume u = read(matching.u(), 1);
-    for (const FocusPyramid::Level &level : pyramid.levels()) {
-        const cl::Buffer refined = low.allocate(queue, 1);
-        queue.commands().enqueueCopyBuffer(matching.u(), refined, 0, 0,
+    const auto refined = [&](float blur_step) {
+        const cl::Buffer placed = low.allocate(queue, 1);
+        queue.commands().enqueueCopyBuffer(matching.u(), placed, 0, 0,
                                            sizeof(cl_float) * size_t{1} * low.height * low.stride);
-        sub_plane_stage.run(refined, focus_stage, pyramid, noise_stage,
-                            2.0f * static_cast<float>(level.shape.scale));
-        expect_mostly(read(refined, 1), twin::refine(u, read_level(level.focus, level.shape, 32), noise.t),
-                      0.03f);
-    }
+        sub_plane_stage.run(placed, focus_stage, pyramid, noise_stage, blur_step);
+        return read(placed, 1);
+    };
+    for (const FocusPyramid::Level &level : pyramid.levels())
+        expect_mostly(refined(2.0f * static_cast<float>(level.shape.scale)),
+                      twin::refine(u, read_level(level.focus, level.shape, 32), 1, noise.t), 0.03f);
+    const Volume finest = read_shorts(focus_stage.volume(), shape.planes, 32);
+    expect_mostly(refined(1.5f), twin::refine(u, finest, shape.planes >= 5 ? 2 : 1, noise.t), 0.03f);
 }
 
 void VolumeStages::expect_noise_as_made()

@@ -64,7 +64,7 @@ std::vector<float> noise_curve(const Volume &focus, const Colours &small);
 Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve, float t);
 Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume &cost, float blur_step,
                          unsigned scale, float t);
-Volume refine(const Volume &u, const Volume &focus, float t);
+Volume refine(const Volume &u, const Volume &focus, int apart, float t);
 std::vector<uint16_t> limit_depth(const std::vector<uint16_t> &depth, unsigned width, unsigned height,
                                   unsigned block, float blur_step, unsigned planes);
 

@@ -246,7 +246,7 @@ Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume
     });
 }
 
-Volume refine(const Volume &u, const Volume &focus, float t)
+Volume refine(const Volume &u, const Volume &focus, int apart, float t)
 {
     const float floor = quantile(least_over_planes(focus).values, 0.1);
     const float factor = std::floor(static_cast<float>(u.width) / static_cast<float>(focus.width));
@@ -256,10 +256,10 @@ Volume refine(const Volume &u, const Volume &focus, float t)
                     fy = (static_cast<float>(y) + 0.5f) / factor - 0.5f;
         const int left = static_cast<int>(std::floor(fx)), top = static_cast<int>(std::floor(fy));
         const float ax = fx - static_cast<float>(left), ay = fy - static_cast<float>(top);
-        const int middle = std::clamp(static_cast<int>(std::lrint(u.at(x, y))), 1, last - 1);
+        const int middle = std::clamp(static_cast<int>(std::lrint(u.at(x, y))), apart, last - apart);
         float h[3];
         for (int k = -1; k <= 1; k++) {
-            const auto z = static_cast<unsigned>(middle + k);
+            const auto z = static_cast<unsigned>(middle + k * apart);
             h[k + 1] = (1 - ay) * ((1 - ax) * at(focus, left, top, z) + ax * at(focus, left + 1, top, z)) +
                        ay * ((1 - ax) * at(focus, left, top + 1, z) + ax * at(focus, left + 1, top + 1, z));
         }
@@ -270,7 +270,8 @@ Volume refine(const Volume &u, const Volume &focus, float t)
         for (float &value : h)
             value = highest / std::max(value, 0.02f * highest);
         const float bend = h[0] - 2.0f * h[1] + h[2];
-        const float vertex = static_cast<float>(middle) + 0.5f * (h[0] - h[2]) / std::max(bend, 1e-4f);
+        const float vertex = static_cast<float>(middle) +
+                             0.5f * static_cast<float>(apart) * (h[0] - h[2]) / std::max(bend, 1e-4f);
         const float position = u.at(x, y);
         const int spacing = std::min(2 * static_cast<int>(factor), 8);
         float least = position, greatest = position;
