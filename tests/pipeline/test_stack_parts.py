@@ -13,7 +13,7 @@ import OpenImageIO as oiio
 from slope import MANY, many_planes
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, alignment, engine, joining, memory, results, slabs, solve  # noqa: E402
+from dff_stack import Unusable, alignment, depths, engine, joining, memory, pictures, results, slabs, solve  # noqa: E402
 from dff_stack.encoding import Encoding  # noqa: E402
 from dff_stack.progress import Progress  # noqa: E402
 
@@ -174,6 +174,23 @@ class Writing(unittest.TestCase):
                 with results.together() as files:
                     results.write_picture(files, pathlib.Path(name, 'a.' + ending), np.zeros((64, 64, 3), np.uint8), first, 'a picture')
                 self.assertTrue(pathlib.Path(name, 'a.' + ending).exists())
+
+
+    def test_letters_of_another_code(self):
+        """OpenImageIO gives them as they are in the file."""
+        with tempfile.TemporaryDirectory() as name:
+            spec = oiio.ImageSpec(64, 64, 3, oiio.UINT8)
+            spec['Artist'], spec['Software'], spec['ImageDescription'], spec['DateTime'] = 'Mxller', 'Mxller', 'Mxller', 'Mxller'
+            path = pathlib.Path(name, 'a.jpg')
+            output = oiio.ImageOutput.create(str(path))
+            assert output.open(str(path), spec) and output.write_image(np.zeros((64, 64, 3), np.uint8)) and output.close()
+            path.write_bytes(path.read_bytes().replace(b'Mxller', b'M\xfcller'))
+            picture, = depths.place_pages(pictures.pages_of(path))[0]
+            self.assertFalse(picture.is_result)
+            for ending in ('jpg', 'tif', 'png', 'exr'):
+                with results.together() as files:
+                    results.write_picture(files, pathlib.Path(name, 'b.' + ending), picture.pixels('u1'), picture.spec, 'a picture')
+                self.assertIn(b'M\xfcller', pathlib.Path(name, 'b.' + ending).read_bytes(), ending)
 
 
 class Arrays:

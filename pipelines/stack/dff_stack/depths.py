@@ -8,6 +8,7 @@ import xml.etree.ElementTree
 import numpy as np
 
 from dff_stack import Unusable
+from dff_stack.pictures import text_of
 
 MICROMETRES = {'nm': 1e-3, 'µm': 1.0, 'um': 1.0, 'mm': 1e3, 'cm': 1e4, 'm': 1e6}
 
@@ -75,7 +76,7 @@ def length(element, name, unit_name):
 
 def ome_of(pictures):
     """What the file of these pages says, or None where it is no OME-TIFF."""
-    text = pictures[0].spec.get_string_attribute('ImageDescription')
+    text = text_of(pictures[0].spec, 'ImageDescription')
     if '<OME' not in text:
         return None
     try:

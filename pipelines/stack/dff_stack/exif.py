@@ -14,6 +14,8 @@ import zlib
 import numpy as np
 import OpenImageIO as oiio
 
+from dff_stack.pictures import text_of
+
 POINTERS = (0x8769, 0x8825)  # of a file's first table: to those of EXIF and GPS
 BYTES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # of a value of each type
 LONG = 4
@@ -105,8 +107,9 @@ def end_of(file):
 
 def beyond_ascii(spec):
     """Names and texts of what a PNG file can say in chunks of UTF-8 alone."""
-    return {attribute.name: attribute.value for attribute in spec.extra_attribs
-            if attribute.type == oiio.TypeString and attribute.name.isascii() and not attribute.value.isascii()}
+    names = [attribute.name for attribute in spec.extra_attribs if attribute.type == oiio.TypeString and attribute.name.isascii()]
+    texts = {name: text_of(spec, name) for name in names}
+    return {name: text for name, text in texts.items() if not text.isascii()}
 
 
 PNG_NAMES = {'Artist': 'Author', 'ImageDescription': 'Description', 'DocumentName': 'Title'}

@@ -20,6 +20,14 @@ def counting_order(path):
     return [(0, int(part), '') if part.isdecimal() else (1, 0, part) for part in parts], path.suffix.casefold()
 
 
+def text_of(spec, name):
+    """What a file says, or nothing. Cameras and programs write letters that are not UTF-8, too."""
+    try:
+        return spec.get_string_attribute(name)
+    except UnicodeDecodeError:
+        return ''
+
+
 class Picture:
     """One page of a file. Nothing of its pixels is kept."""
 
@@ -31,9 +39,9 @@ class Picture:
         self.grey = spec.nchannels <= 2  # the second is alpha
         self.bits = spec.get_int_attribute('oiio:BitsPerSample', 8 * spec.format.basesize())
         self.is_float = spec.format.basetype in (oiio.HALF, oiio.FLOAT, oiio.DOUBLE)
-        self.time = spec.get_string_attribute('Exif:DateTimeOriginal') or spec.get_string_attribute('DateTime')
+        self.time = text_of(spec, 'Exif:DateTimeOriginal') or text_of(spec, 'DateTime')
         if self.time:
-            self.time += '.' + spec.get_string_attribute('Exif:SubsecTimeOriginal')
+            self.time += '.' + text_of(spec, 'Exif:SubsecTimeOriginal')
         self.distance_m = focus_distance(spec)
         self.position_um = None  # along the axis, where the file says so
 
@@ -48,7 +56,7 @@ class Picture:
     @property
     def is_result(self):
         """Whether it was made by this program."""
-        return self.spec.get_string_attribute('Software').startswith('dff-stack ')
+        return text_of(self.spec, 'Software').startswith('dff-stack ')
 
     def __str__(self):
         kind = 'half or float' if self.is_float else f'{self.bits} bits'

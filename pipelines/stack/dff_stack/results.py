@@ -10,6 +10,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from dff_stack import SOFTWARE, Unusable, exif, one_line
+from dff_stack.pictures import text_of
 
 PICTURE_ENDINGS = ('.tif', '.tiff', '.png', '.jpg', '.jpeg', '.exr')
 # What describes the file that was read and not the picture in it.
@@ -84,6 +85,13 @@ def plain_spec(pixels, description):
     return spec
 
 
+def is_empty(spec, name):
+    try:
+        return not spec.get_string_attribute(name)
+    except UnicodeDecodeError:  # of another code, which stays as it is
+        return False
+
+
 def picture_spec(first, pixels, description):
     """That of the first picture, whose EXIF and profile it keeps."""
     spec = oiio.ImageSpec(first)
@@ -91,7 +99,7 @@ def picture_spec(first, pixels, description):
         spec.erase_attribute(name)
     texts = [attribute.name for attribute in first.extra_attribs if attribute.type == oiio.TypeString]
     for name in texts:
-        if not first.get_string_attribute(name):  # at which OpenImageIO would abort
+        if is_empty(first, name):  # at which OpenImageIO would abort
             spec.erase_attribute(re.escape(name))
     height, width, channels = pixels.shape
     spec.x = spec.y = spec.full_x = spec.full_y = 0
@@ -136,7 +144,7 @@ def write_picture(files, path, pixels, first, description):
         spec.set_format(oiio.HALF)
         spec.erase_attribute('ICCProfile.*')
         spec['oiio:ColorSpace'] = 'Linear'
-        taken = first.get_string_attribute('Exif:DateTimeOriginal')
+        taken = text_of(first, 'Exif:DateTimeOriginal')
         if taken:
             spec['DateTime'] = taken  # which EXR files have as the time of capture
     write_with_facts(files.begin(path), held, spec, path)
