@@ -29,6 +29,7 @@ if [ -x "$BENCH_CAMERA" ]; then
 else
     echo "skipped lenssweepsrc against the bench camera: there is no $BENCH_CAMERA"
 fi
-# fpga:, max14574: and v4l2:. Emulated and sanitized, all takes ten times as long as it does emulated.
-GTEST_FILTER=${VM_TESTS:-Sequencer.*:LensDriver.*:VideoLens.*:SubdeviceLens.*:EveryLens.*:StepMode.*:SyncMode.*} DFF_VM_SECONDS=1500 \
-    meson test -C build-tsan --no-rebuild --print-errorlogs -t 5 'virtual machine'
+# fpga:, max14574: and v4l2:. Emulated and sanitized all is so slow that vivid's pictures are not of the times they are stamped
+# with: whether they show the lens at rest is for the release build's tests.
+GTEST_FILTER='Sequencer.*:LensDriver.*:VideoLens.*:SubdeviceLens.*:EveryLens.*:StepMode.*:SyncMode.*:-StepMode.frames_show_the_lens*' \
+    DFF_VM_SECONDS=1500 meson test -C build-tsan --no-rebuild --print-errorlogs -t 5 'virtual machine'
