@@ -41,7 +41,7 @@ double step_of(const std::vector<double> &currents)
 
 } // namespace
 
-OptotuneTriangle::OptotuneTriangle(const std::string &device, std::optional<FocusPoints> points)
+OptotuneTriangle::OptotuneTriangle(const std::string &device, const std::optional<FocusPoints> &points)
     : points_(in_milliamperes(points)), driver_(device)
 {
 }

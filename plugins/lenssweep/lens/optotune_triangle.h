@@ -22,7 +22,7 @@ namespace dff {
 class OptotuneTriangle : public SweptLens {
 public:
     /* Throws LensError if no driver answers on the port, std::invalid_argument without points in mA. */
-    OptotuneTriangle(const std::string &device, std::optional<FocusPoints> points);
+    OptotuneTriangle(const std::string &device, const std::optional<FocusPoints> &points);
     ~OptotuneTriangle() override;
 
     void prepare(const LensSweep &sweep) override;
