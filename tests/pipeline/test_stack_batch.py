@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """test_stack_batch.py SOURCE_ROOT: dff-stack --batch, alone and with workers of which one is killed."""
+import contextlib
 import os
 import pathlib
 import shutil
@@ -113,12 +114,18 @@ class Batch(Folders):
 
     def test_a_cluster_that_is_there_is_used(self):
         self.skip_without_dask()
-        cluster = ("dask-scheduler --host 127.0.0.1 --port 8786 --no-dashboard & "
-                   "dask-worker tcp://127.0.0.1:8786 --nthreads 1 --no-dashboard & exec \"$@\"")
-        command = ['unshare', '-n', '--kill-child', '--fork', '--pid', 'sh', '-c', f'ip link set lo up; {cluster}', 'sh',
+        cluster = ("dask-scheduler --host 127.0.0.1 --port 8786 --no-dashboard >/dev/null 2>&1 & "
+                   "dask-worker tcp://127.0.0.1:8786 --nthreads 1 --no-dashboard >/dev/null 2>&1 & exec \"$@\"")
+        command = ['unshare', '-n', 'sh', '-c', f'ip link set lo up; {cluster}', 'sh',
                    *self.arguments('--scheduler', 'tcp://127.0.0.1:8786')]
-        finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=SECONDS * 3, cwd=self.photos)
-        self.assert_all_but_the_broken_one(finished.returncode, finished.stdout)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.photos,
+                                   start_new_session=True)
+        try:
+            output, errors = process.communicate(timeout=SECONDS * 3)
+        finally:  # the cluster is of its session, and does not end by itself
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        self.assert_all_but_the_broken_one(process.returncode, output or errors)
 
     def test_an_interrupt_ends_it_and_leaves_whole_files(self):
         process = subprocess.Popen(self.arguments(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

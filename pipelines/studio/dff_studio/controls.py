@@ -49,8 +49,8 @@ def described(element, spec):
     about = {'name': spec.name, 'kind': kind, 'about': spec.blurb, 'value': value_of(element, spec),
              'running': bool(spec.flags & Gst.PARAM_MUTABLE_PLAYING)}
     if kind == 'choice':
-        about['choices'] = [{'name': choice.value_nick, 'about': choice.value_name} for choice in choices_of(spec)]
-        about['default'] = spec.default_value.value_nick if hasattr(spec.default_value, 'value_nick') else None
+        about['choices'] = [{'name': choice.value_nick, 'about': choice.value_name} for choice in choices_of(element, spec)]
+        about['default'] = enum_of(element, spec)(int(spec.default_value)).value_nick
     elif kind != 'switch':
         about.update(least=spec.minimum, most=spec.maximum, default=spec.default_value)
     else:
@@ -58,8 +58,13 @@ def described(element, spec):
     return without_nan(about)
 
 
-def choices_of(spec):
-    return [value for _, value in sorted(spec.enum_class.__enum_values__.items())]
+def enum_of(element, spec):
+    """Its class in Python. A spec's own enum_class is that up to PyGObject 3.48 only."""
+    return type(element.get_property(spec.name))
+
+
+def choices_of(element, spec):
+    return [value for _, value in sorted(enum_of(element, spec).__enum_values__.items())]
 
 
 def controls(pipeline):
@@ -81,16 +86,17 @@ def find(pipeline, path, name):
     raise Unusable(f'There is no such property: {name}')
 
 
-def checked(spec, value):
+def checked(element, spec, value):
     """The value as the property takes it."""
     kind = kind_of(spec)
     if kind == 'switch' and isinstance(value, bool):
         return value
     if kind == 'choice':
-        for choice in choices_of(spec):
+        choices = choices_of(element, spec)
+        for choice in choices:
             if choice.value_nick == value:
                 return choice
-        raise Unusable(f'{spec.name} is one of {", ".join(choice.value_nick for choice in choices_of(spec))}')
+        raise Unusable(f'{spec.name} is one of {", ".join(choice.value_nick for choice in choices)}')
     number = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
     if kind == 'switch' or not number or (kind == 'whole' and value != int(value)):
         raise Unusable(f'{spec.name} cannot be {value}')
@@ -102,7 +108,7 @@ def checked(spec, value):
 def set_property(source, path, name, value, then):
     """Sets it; starts the source anew where it cannot be changed while it runs. `then` is called when it is set, by any thread."""
     element, spec = find(source.pipeline, path, name)
-    new = checked(spec, value)
+    new = checked(element, spec, value)
 
     def change():
         element.set_property(name, new)
