@@ -64,9 +64,12 @@ architecture rtl of plane_table is
   signal staged_enable  : std_ulogic;
   signal copying        : std_ulogic;
 
-  -- The word that has left the memory in a copy
-  signal copied         : std_ulogic;
-  signal copied_address : unsigned(7 downto 0);
+  -- The word that leaves the memory in a copy, and one cycle later: the memory itself is slow
+  signal leaving         : std_ulogic;
+  signal leaving_address : unsigned(7 downto 0);
+  signal copied          : std_ulogic;
+  signal copied_address  : unsigned(7 downto 0);
+  signal copied_word     : std_ulogic_vector(15 downto 0);
 
   signal bank   : std_ulogic;
   signal gap    : unsigned(16 downto 0);
@@ -80,8 +83,6 @@ architecture rtl of plane_table is
   signal refused       : std_ulogic;
 
 begin
-
-  gap <= resize(checked.period, 17) - resize(checked.exposure, 17);
 
   copying        <= '1' when state = copy_state else
                     '0';
@@ -110,7 +111,7 @@ begin
 
     if rising_edge(clk) then
       if (copied = '1') then
-        banks(to_integer((not bank) & copied_address)) <= host_word;
+        banks(to_integer((not bank) & copied_address)) <= copied_word;
       end if;
       if (table.read = '1') then
         table_data <= banks(to_integer(bank & table.plane & table.column));
@@ -143,7 +144,13 @@ begin
       bad_planes <= '0';
       bad_timing <= '0';
       bad_code   <= '0';
-      copied     <= copying;
+
+      leaving        <= copying;
+      copied         <= leaving;
+      copied_address <= leaving_address;
+      copied_word    <= host_word;
+
+      gap <= resize(checked.period, 17) - resize(checked.exposure, 17);
 
       case state is
 
@@ -170,8 +177,8 @@ begin
 
         when copy_state =>
 
-          copied_address <= address;
-          address        <= address + 1;
+          leaving_address <= address;
+          address         <= address + 1;
           if (address = shift_left(resize(checked.planes, 9), 2) - 1) then
             state <= verdict_state;
           end if;
@@ -188,21 +195,21 @@ begin
 
       end case;
 
-      -- Check of the word that leaves the memory
+      -- Check of the word that has left the memory
       check(1) <= '0';
       check(2) <= check(1);
       if (copied = '1') then
-        if (copied_address(0) = '0' and unsigned(host_word) > MAX_CODE) then
+        if (copied_address(0) = '0' and unsigned(copied_word) > MAX_CODE) then
           refuse(bad_code, copied_address(7 downto 2));
         end if;
         if (copied_address(1 downto 0) = "01") then
-          delay <= resize(unsigned(host_word), 18) + LENS_GAP;
+          delay <= resize(unsigned(copied_word), 18) + LENS_GAP;
         end if;
         if (copied_address(1 downto 0) = "11") then
           check(1)      <= '1';
           settled_plane <= copied_address(7 downto 2);
-          settle        <= resize(unsigned(host_word), 18);
-          if (unsigned(host_word) < checked.lead) then
+          settle        <= resize(unsigned(copied_word), 18);
+          if (unsigned(copied_word) < checked.lead) then
             settle <= resize(checked.lead, 18);
           end if;
         end if;
@@ -230,7 +237,9 @@ begin
         apply   <= '0';
         bank    <= bank;
         refused <= '0';
+        leaving <= '0';
         copied  <= '0';
+        check   <= "00";
       end if;
 
       if (reset = '1') then
@@ -241,8 +250,9 @@ begin
         bank    <= '0';
         apply   <= '0';
         address <= (others => '0');
-        check   <= "00";
+        leaving <= '0';
         copied  <= '0';
+        check   <= "00";
       end if;
     end if;
 

@@ -108,6 +108,7 @@ begin
   pulse.opto_off   <= unsigned(active(WORD_OPTO_OFF_US)(opto_off_us_value_t));
 
   driver.address <= active(WORD_LENS_ADDRESS)(lens_address_value_t);
+  driver.direct  <= active(WORD_LENS_ADDRESS)(LENS_ADDRESS_DIRECT);
   driver.start   <= active(WORD_LENS_START);
   driver.stage   <= active(WORD_LENS_STAGE);
   driver.commit  <= active(WORD_LENS_COMMIT);

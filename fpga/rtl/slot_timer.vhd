@@ -34,56 +34,63 @@ architecture rtl of slot_timer is
 
   constant TICK_CYCLES : positive := CLOCK_HZ / TICK_HZ;
 
-  subtype time_t is natural range 0 to 2 ** 17 - 1;
+  -- Taken over for the slot in hand. The moments are worked out in the cycles that follow, one sum in each
+  signal length        : unsigned(16 downto 0);
+  signal held_exposure : unsigned(15 downto 0);
+  signal held_lead     : unsigned(7 downto 0);
+  signal expose_at     : unsigned(16 downto 0);
+  signal fire_at       : unsigned(16 downto 0);
 
-  signal length    : unsigned(16 downto 0);
-  signal fire_at   : time_t;
-  signal expose_at : time_t;
-  signal last_tick : time_t;
-  signal slot_time : time_t;
+  -- The microsecond in hand, from 1 on, and the cycle in it
+  signal slot_time : unsigned(16 downto 0);
   signal cycle     : natural range 0 to TICK_CYCLES - 1;
+
+  -- One cycle each: the microsecond before a moment is over, the slot ends with this cycle
+  signal fire_mark   : std_ulogic;
+  signal expose_mark : std_ulogic;
+  signal end_mark    : std_ulogic;
 
 begin
 
-  length <= resize(period, 17) + flyback;
+  assert TICK_CYCLES >= 3
+    report "slot_timer: the clock must be at least 3 times the rate of the time unit"
+    severity failure;
 
-  moments : process (all) is
-  begin
-
-    fire_due   <= '0';
-    expose_due <= '0';
-    slot_end   <= '0';
-
-    if (running = '1' and cycle = 0) then
-      if (slot_time = fire_at) then
-        fire_due <= '1';
-      end if;
-      if (slot_time = expose_at) then
-        expose_due <= '1';
-      end if;
-    end if;
-
-    if (running = '1' and cycle = TICK_CYCLES - 1 and slot_time = last_tick) then
-      slot_end <= '1';
-    end if;
-
-  end process moments;
+  fire_due   <= fire_mark and running;
+  expose_due <= expose_mark and running;
+  slot_end   <= end_mark and running;
 
   count : process (clk) is
   begin
 
     if rising_edge(clk) then
+      expose_at <= length - held_exposure;
+      fire_at   <= expose_at - held_lead;
+
+      fire_mark   <= '0';
+      expose_mark <= '0';
+      end_mark    <= '0';
+
       if (running = '0' or slot_end = '1') then
-        slot_time <= 0;
-        cycle     <= 0;
-        fire_at   <= to_integer(length - exposure - lead);
-        expose_at <= to_integer(length - exposure);
-        last_tick <= to_integer(length - 1);
+        slot_time     <= to_unsigned(1, 17);
+        cycle         <= 0;
+        length        <= resize(period, 17) + flyback;
+        held_exposure <= exposure;
+        held_lead     <= lead;
       elsif (cycle = TICK_CYCLES - 1) then
         slot_time <= slot_time + 1;
         cycle     <= 0;
+        if (slot_time = fire_at) then
+          fire_mark <= '1';
+        end if;
+        if (slot_time = expose_at) then
+          expose_mark <= '1';
+        end if;
       else
         cycle <= cycle + 1;
+        if (cycle = TICK_CYCLES - 2 and slot_time = length) then
+          end_mark <= '1';
+        end if;
       end if;
     end if;
 

@@ -67,6 +67,7 @@ package sweep_registers_pkg is
   constant COMMIT_COMMIT            : natural := 0;
   constant SHAPE_TRIANGLE           : natural := 0;
   constant SHAPE_TRIGGER_ACTIVE_LOW : natural := 1;
+  constant LENS_ADDRESS_DIRECT      : natural := 7;
 
   -- Longer fields: their range
 
@@ -135,7 +136,7 @@ package sweep_registers_pkg is
   constant DEFAULTS : words_t(0 to WORD_COUNT - 1) :=
   (
     WORD_IDENTITY         => x"DFF5",
-    WORD_VERSION          => x"0100",
+    WORD_VERSION          => x"0101",
     WORD_CONTROL          => x"0000",
     WORD_STATUS           => x"0000",
     WORD_ERROR            => x"0000",
@@ -191,7 +192,7 @@ package sweep_registers_pkg is
     WORD_TRIGGER_WIDTH_US => x"FFFF",
     WORD_OPTO_ON_US       => x"00FF",
     WORD_OPTO_OFF_US      => x"00FF",
-    WORD_LENS_ADDRESS     => x"007F",
+    WORD_LENS_ADDRESS     => x"00FF",
     WORD_LENS_START       => x"FFFF",
     WORD_LENS_STAGE       => x"FFFF",
     WORD_LENS_COMMIT      => x"FFFF",

@@ -3,8 +3,8 @@
 --
 -- The sweep. Each plane has a slot of `period`; plane 0 has `flyback` more. At the start of a slot code A is
 -- committed, then code B is staged and committed, the lens settles, and at a fixed time of the slot the trigger is
--- fired; during the exposure code A of the next plane is staged. The lens is never waited for: what is not in place
--- when the trigger is due stops the sweep.
+-- fired; during the exposure code A of the next plane is staged. A driver that takes a code in one write gets it in
+-- place of each commit. The lens is never waited for: what is not in place when the trigger is due stops the sweep.
 
 library ieee;
   use ieee.std_logic_1164.all;
@@ -87,6 +87,10 @@ architecture rtl of sweep_sequencer is
   signal due          : std_ulogic;
   signal fire_now     : std_ulogic;
 
+  -- What of the settling lies before the trigger's leading edge. The row and the words stand still for long before it
+  -- is used
+  signal settling : unsigned(15 downto 0);
+
   -- Delay and settling, from the end of a write
   signal waited     : natural range 0 to 2 ** 16 - 1;
   signal wait_cycle : natural range 0 to TICK_CYCLES - 1;
@@ -108,9 +112,10 @@ begin
   code <= code_a when second = '0' else
           code_b;
 
-  -- At the end of the slot before, or with the first code staged
+  -- At the end of the slot before, or with the first code staged, or known if it is not staged
   begin_slot <= slot_end and go when state = wait_slot_state else
                 written and not second and not running when state = stage_high_state else
+                fetched and go and driver.direct and not running when state = fetch_state else
                 '0';
 
   -- The trigger is given if all is in place when it is due
@@ -186,13 +191,22 @@ begin
 
     end procedure write_stage;
 
-    procedure write_commit is
+    -- The lens moves with the end of this write: to the code that is staged, or to this one
+
+    procedure move_lens (
+      direct_code : std_ulogic_vector(9 downto 0)
+    ) is
     begin
 
-      write_lens(driver.commit(7 downto 0), driver.commit(15 downto 8));
+      if (driver.direct = '1') then
+        write_lens(driver.stage(15 downto 8), direct_code(9 downto 2));
+      else
+        write_lens(driver.commit(7 downto 0), driver.commit(15 downto 8));
+      end if;
+
       state <= commit_state;
 
-    end procedure write_commit;
+    end procedure move_lens;
 
     -- An exposure that has begun is finished; a gap is given up at once
 
@@ -232,6 +246,12 @@ begin
         lens_busy <= '0';
       end if;
 
+      -- Unknown in a simulation until the first row is read
+      settling <= (others => '0');
+      if (to_01(settle) > sweep.lead) then
+        settling <= settle - sweep.lead;
+      end if;
+
       if (state /= delay_state and state /= settle_state) then
         waited     <= 0;
         wait_cycle <= 0;
@@ -267,8 +287,12 @@ begin
             second <= '0';
             if (go = '0') then
               stop;
-            else
+            elsif (driver.direct = '0') then
               write_stage(code_a(1 downto 0));
+            elsif (running = '1') then
+              state <= wait_slot_state;
+            else
+              move_lens(code_a);
             end if;
           end if;
 
@@ -287,7 +311,7 @@ begin
             stop;
           elsif (written = '1') then
             if (second = '1' or running = '0') then
-              write_commit;
+              move_lens(code);
             else
               state <= wait_slot_state;
             end if;
@@ -298,7 +322,7 @@ begin
           if (go = '0') then
             stop;
           elsif (slot_end = '1') then
-            write_commit;
+            move_lens(code_a);
           end if;
 
         when commit_state =>
@@ -308,7 +332,7 @@ begin
           elsif (written = '1') then
             if (second = '0') then
               state <= delay_state;
-            elsif (settle > sweep.lead) then
+            elsif (settling /= 0) then
               state <= settle_state;
             else
               state <= ready_state;
@@ -321,14 +345,18 @@ begin
             stop;
           elsif (waited = delay) then
             second <= '1';
-            write_stage(code_b(1 downto 0));
+            if (driver.direct = '1') then
+              move_lens(code_b);
+            else
+              write_stage(code_b(1 downto 0));
+            end if;
           end if;
 
         when settle_state =>
 
           if (go = '0') then
             stop;
-          elsif (waited = settle - sweep.lead) then
+          elsif (waited = settling) then
             state <= ready_state;
           end if;
 

@@ -29,10 +29,11 @@ package sweep_types_pkg is
     opto_off   : unsigned(7 downto 0);
   end record pulse_words_t;
 
-  -- Words in use: the lens driver's address and registers
+  -- Words in use: the lens driver's address and registers. `direct`: it takes a code in one write
 
   type driver_words_t is record
     address : std_ulogic_vector(6 downto 0);
+    direct  : std_ulogic;
     start   : std_ulogic_vector(15 downto 0);
     stage   : std_ulogic_vector(15 downto 0);
     commit  : std_ulogic_vector(15 downto 0);

@@ -21,11 +21,11 @@ BIT_CYCLES = -(-CLOCK_HZ // (400_000 * SCALE))
 
 
 class Bench:
-    def __init__(self, dut):
+    def __init__(self, dut, driver=Max14574):
         self.dut = dut
         dut.reset_button.value = 0
         dut.run.value = 0
-        self.lens = Max14574(dut.lens_scl, dut.lens_sda, dut.lens_scl_low, dut.lens_sda_low)
+        self.lens = driver(dut.lens_scl, dut.lens_sda, dut.lens_scl_low, dut.lens_sda_low)
         self.host = I2cHost(dut.host_scl_low, dut.host_sda_low, dut.host_sda, bit_ps=max(24, BIT_CYCLES) * CLOCK_PS)
         self.triggers, self.syncs = [], []
         cocotb.start_soon(self._record(dut.trigger, self.triggers))

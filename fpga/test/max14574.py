@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""A model of the MAX14574 lens driver as its bus sees it, and the faults that a real one can have."""
+"""Models of the lens drivers MAX14574 and MAX14515 as their bus sees them, and the faults that a real one can have."""
 
 import cocotb
 from cocotb.triggers import Timer, ValueChange
@@ -98,3 +98,20 @@ class Max14574:
         self.registers[register] = value
         if register == CMND and value & UPD_OUT and self.registers[USERMODE] & ACTIVE:
             self.codes.append((now, self.registers[LLV4] << 2 | self.registers[OIS_LSB] >> 6))
+
+
+class Max14515(Max14574):
+    """Takes a code of 8 bits in one write, which moves the lens. codes: (ps, 8-bit code)."""
+
+    POWER_MODE, VOLTAGE, ON = 0x00, 0x01, 0x01
+
+    def __init__(self, *lines):
+        super().__init__(*lines, address=0x76)
+        self.registers = {self.POWER_MODE: 0, self.VOLTAGE: 0}
+
+    def _write(self, register, value):
+        now = get_sim_time("ps")
+        self.writes.append((now, register, value))
+        self.registers[register] = value
+        if register == self.VOLTAGE and self.registers[self.POWER_MODE] & self.ON:
+            self.codes.append((now, value))

@@ -89,8 +89,8 @@ class Expected:
     planes: list = field(default_factory=list)
 
 
-def expect(table, sweeps, tick_cycles, bit_cycles):
-    """The events of the first `sweeps` sweeps after a start."""
+def expect(table, sweeps, tick_cycles, bit_cycles, direct=False):
+    """The events of the first `sweeps` sweeps after a start. direct: the driver takes bits 9..2 of a code in one write."""
     result = Expected()
     write = WRITE_BITS * bit_cycles + HANDOVER_CYCLES
     start, downward = 0, False
@@ -109,8 +109,9 @@ def expect(table, sweeps, tick_cycles, bit_cycles):
             if position == 0:
                 result.sync.append((exposure, exposure + table.trigger_width_us * tick_cycles))
             end_a = start + FIRST_CYCLES + WRITE_BITS * bit_cycles
-            end_b = end_a + plane.delay_us * tick_cycles + WAIT_CYCLES + 3 * write
-            result.codes += [(end_a, plane.code_a), (end_b, plane.code_b)]
+            end_b = end_a + plane.delay_us * tick_cycles + WAIT_CYCLES + (1 if direct else 3) * write
+            result.codes += [(end, code >> 2 if direct else code)
+                             for end, code in ((end_a, plane.code_a), (end_b, plane.code_b))]
             result.planes.append(number)
             assert end_b + plane.settle_us * tick_cycles <= exposure, "the table cannot be met"
             start += length * tick_cycles

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """The bytes that the C++ driver sends, recorded by its unit test, give the sweep they were meant to give; so do the
-commands of the README."""
+commands of the README, and those of doc/wiring.md for a driver that takes a code in one write."""
 
+import random
 import re
 from pathlib import Path
 
 import cocotb
 
 from bench import BIT_CYCLES, TICK_CYCLES, Bench
-from sweep_model import Plane, Table, expect
+from max14574 import Max14515
+from sweep_model import Plane, Table, expect, random_table
 from words import DEFAULT, WORD
 
 SWEEPS = 3
@@ -87,18 +89,41 @@ async def expectation(bench, table, what):
     bench.syncs[:] = older + bench.syncs
 
 
-@cocotb.test()
-async def commands_of_the_readme_give_a_sweep(dut):
-    bench = Bench(dut)
-    await bench.reset()
-    readme = (TEST.parent / "README.md").read_text(encoding="utf-8")
-    for action, address, word, value, answer in re.findall(
-            r"^i2c(set|get) -y 1 (\w+) (\w+) (?:(\w+) )?w *(?:# (0x\w+))?", readme, re.MULTILINE):
+async def play(bench, page):
+    """Plays the i2c-tools commands of a page; gives how many there are."""
+    commands = re.findall(r"^ *i2c(set|get) -y 1 (\w+) (\w+) (?:(\w+) )?w *(?:# (0x\w+))?",
+                          (TEST.parent / page).read_text(encoding="utf-8"), re.MULTILINE)
+    for action, address, word, value, answer in commands:
         assert int(address, 0) == bench.host.address
         if action == "set":
             await bench.host.write_word(int(word, 0), int(value, 0))
         else:
             assert await bench.host.read_word(int(word, 0)) == int(answer, 0)
+    return len(commands)
+
+
+@cocotb.test()
+async def commands_of_the_wiring_page_sweep_a_driver_of_one_write(dut):
+    bench = Bench(dut, Max14515)
+    rng = random.Random(8)
+    for triangle in (False, True):
+        await bench.reset()
+        assert await play(bench, "doc/wiring.md") == 3
+        table = random_table(rng, 296, 148, planes=4, triangle=triangle)
+        await table.write(bench.host)
+        await bench.control("enable")
+        await bench.until_triggers(3 * len(table.planes), 20_000, active=0 if table.active_low else 1)
+        await bench.wait_us(table.lead_us + table.trigger_width_us + 20)
+        bench.check(table, expect(table, 3, TICK_CYCLES, BIT_CYCLES, direct=True))
+        assert await bench.errors() == set()
+        assert {register for _, register, _ in bench.lens.writes} == {Max14515.POWER_MODE, Max14515.VOLTAGE}
+
+
+@cocotb.test()
+async def commands_of_the_readme_give_a_sweep(dut):
+    bench = Bench(dut)
+    await bench.reset()
+    await play(bench, "README.md")
     table = Table([Plane(340, 9, 300, 90), Plane(560, 9, 600, 90)])
     await bench.until_triggers(3, 30_000)
     await bench.wait_us(150)

@@ -67,8 +67,7 @@ async def staged_words_keep_their_bits_and_wait_for_apply(dut):
     await begin(dut, **IDLE)
     outputs = {"period_us": "sweep_period", "exposure_us": "sweep_exposure", "flyback_us": "sweep_flyback",
                "trigger_width_us": "pulse_width", "opto_on_us": "pulse_opto_on", "opto_off_us": "pulse_opto_off",
-               "lens_address": "driver_address", "lens_start": "driver_start", "lens_stage": "driver_stage",
-               "lens_commit": "driver_commit"}
+               "lens_start": "driver_start", "lens_stage": "driver_stage", "lens_commit": "driver_commit"}
     checked = {"period_us": "checked_period", "exposure_us": "checked_exposure", "planes": "checked_planes",
                "trigger_width_us": "checked_width"}
     used = dict(DEFAULT)
@@ -93,6 +92,8 @@ async def staged_words_keep_their_bits_and_wait_for_apply(dut):
         used = {name: value & MASK[name] for name, value in values.items()}
         for name, output in outputs.items():
             assert int(getattr(dut, output).value) == used[name], name
+        assert int(dut.driver_address.value) == used["lens_address"] & 0x7F
+        assert int(dut.driver_direct.value) == bool(used["lens_address"] & BIT["lens_address.direct"])
         assert int(dut.sweep_planes.value) == used["planes"] & 0x7F
         assert int(dut.sweep_triangle.value) == bool(used["shape"] & BIT["shape.triangle"])
         low = bool(used["shape"] & BIT["shape.trigger_active_low"])

@@ -16,7 +16,7 @@ WRITE = 40                      # cycles of a write: 5 us
 START, LOW, HIGH, COMMIT = 0x03, 0x04, 0x08, 0x09
 ROWS = [[111, 2, 222, 5], [333, 0, 444, 0], [555, 3, 666, 1]]
 SWEEP = dict(planes=3, triangle=0, period=80, exposure=40, flyback=0, lead=0)
-INPUTS = dict(go=0, driver_address=0x77, driver_start=0x0303, driver_stage=0x0804, driver_commit=0x0209, table_data=0,
+INPUTS = dict(go=0, driver_address=0x77, driver_direct=0, driver_start=0x0303, driver_stage=0x0804, driver_commit=0x0209, table_data=0,
               lens_done=0, lens_fault=0)
 
 
@@ -84,8 +84,8 @@ class Rig:
 
 
 
-async def started(dut, rows=ROWS, slow=None, faulty=(), rig=None, **changes):
-    await begin(dut, **INPUTS, **{f"sweep_{word}": value for word, value in (SWEEP | changes).items()})
+async def started(dut, rows=ROWS, slow=None, faulty=(), rig=None, direct=0, **changes):
+    await begin(dut, **(INPUTS | dict(driver_direct=direct)), **{f"sweep_{word}": value for word, value in (SWEEP | changes).items()})
     rig = rig or Rig(dut)
     rig.renew(rows, slow, faulty)
     dut.go.value = 1
@@ -107,6 +107,34 @@ async def codes_are_staged_and_committed_in_order(dut):
     assert [write[1] for write in rig.writes][:9] == [START, LOW, HIGH, COMMIT, LOW, HIGH, COMMIT, LOW, HIGH]
     assert rig.writes[0][2] == 0x03 and rig.writes[3][2] == 0x02
     assert rig.codes() == [111, 222, 333, 444, 555, 666]
+
+
+@cocotb.test()
+async def driver_that_takes_a_code_in_one_write_gets_it_in_place_of_the_commit(dut):
+    rows = [[111, 2, 222, 5], [333, 0, 444, 0], [555, 3, 666, 25]]
+    rig = await started(dut, rows, direct=1, flyback=9)
+    await until_fires(rig, 7)
+    await cycles(dut, 1)
+    assert rig.writes[0][1:] == (START, 0x03)
+    codes = [code for row in rows for code in (row[0], row[2])]
+    assert [write[1:] for write in rig.writes[1:15]] == [(HIGH, code >> 2) for code in (codes * 3)[:14]]
+    # Code A begins the slot, code B follows it after the delay; nothing is written in an exposure
+    slots = [rig.writes[1][0] + (80 * slot + 9 * ((slot + 2) // 3)) * TICK * CLOCK_PS for slot in range(7)]
+    assert [round(time) for time, _, _ in rig.writes[1:15:2]] == [round(slot) for slot in slots]
+    for slot in range(7):
+        delay = (rig.writes[2 + 2 * slot][0] - rig.writes[1 + 2 * slot][0]) // CLOCK_PS - WRITE
+        assert rows[slot % 3][1] * TICK <= delay <= rows[slot % 3][1] * TICK + 3
+    assert [fire[1] for fire in rig.fires] == [0, 1, 2, 0, 1, 2, 0] and not rig.lates
+
+
+@cocotb.test()
+async def slow_driver_of_one_write_stops_before_the_trigger(dut):
+    """Write 2 is code B of the first plane."""
+    rig = await started(dut, direct=1, slow={2: WRITE + 300})
+    await cycles_until(dut, dut.late, 1, 2000)
+    dut.go.value = 0
+    await rig.rest(4000)
+    assert not rig.fires and len(rig.lates) == 1
 
 
 @cocotb.test()

@@ -62,13 +62,13 @@ enum class Word : std::uint8_t {
     opto_on_us = 19,
     /* Delay of the opto-isolator from the pin's falling edge to the camera. Staged. */
     opto_off_us = 20,
-    /* I2C address of the lens driver. Staged. */
+    /* I2C address of the lens driver, and how it takes a code. Staged. */
     lens_address = 21,
     /* Byte write that wakes the lens driver, sent when a sweep starts from standstill (MAX14574: USERMODE = active). Staged. */
     lens_start = 22,
     /* Registers that take a code (MAX14574: OIS_LSB and LLV4). Staged. */
     lens_stage = 23,
-    /* Byte write that moves the lens to the code (MAX14574: CMND = UPD_OUT). Staged. */
+    /* Byte write that moves the lens to the code (MAX14574: CMND = UPD_OUT); not sent with `lens_address.direct`. Staged. */
     lens_commit = 24,
     /* The plane that the four words below belong to. Takes effect at once, without `commit`. */
     plane_select = 25,
@@ -86,7 +86,7 @@ inline constexpr unsigned word_count = 30;
 
 /* The identity. */
 inline constexpr Field identity_value {0, 16};
-/* Grows when words are added. */
+/* Grows when words or bits are added. */
 inline constexpr Field version_minor {0, 8};
 /* Grows when the meaning of a word changes. */
 inline constexpr Field version_major {8, 8};
@@ -160,11 +160,13 @@ inline constexpr Field opto_on_us_value {0, 8};
 inline constexpr Field opto_off_us_value {0, 8};
 /* 7 bits, without the read/write bit. */
 inline constexpr Field lens_address_value {0, 7};
+/* 0: a code is staged in two registers and the lens moved by a third write (MAX14574). 1: one write to `lens_stage.high_register` of bits 9..2 of the code moves the lens (MAX14515). */
+inline constexpr Field lens_address_direct {7, 1};
 /* Register number. */
 inline constexpr Field lens_start_register {0, 8};
 /* Value written. */
 inline constexpr Field lens_start_value {8, 8};
-/* Takes bits 1..0 of the code in its bits 7..6. */
+/* Takes bits 1..0 of the code in its bits 7..6; not written with `lens_address.direct`. */
 inline constexpr Field lens_stage_low_register {0, 8};
 /* Takes bits 9..2 of the code. */
 inline constexpr Field lens_stage_high_register {8, 8};
@@ -185,7 +187,7 @@ inline constexpr Field plane_settle_us_value {0, 16};
 
 /* Words that have another value than 0 after reset. */
 inline constexpr std::uint16_t identity_default = 0xdff5;
-inline constexpr std::uint16_t version_default = 0x0100;
+inline constexpr std::uint16_t version_default = 0x0101;
 inline constexpr std::uint16_t planes_default = 0x0006;
 inline constexpr std::uint16_t period_us_default = 0x1900;
 inline constexpr std::uint16_t exposure_us_default = 0x1770;
