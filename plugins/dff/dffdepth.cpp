@@ -25,6 +25,10 @@
  * Where the picture stands still, depth of live sources is the mean of up to 16 stacks, so that it does not
  * flicker (`steady`); what moves has the depth of its last stack alone.
  *
+ * Hairs and nets are out of focus in the plane of what lies behind them, which shows through: both are sharp
+ * in some plane, and that of which there is more to see has the depth. `prefer=near` (and method=volume)
+ * gives it to the thin thing, `prefer=far` to what is behind.
+ *
  * The OpenCL device is shared with the neighbours, or given by the application: see
  * gst_context_new_dff_device(). While a first stack takes over a second, as it does when kernels have to be
  * compiled, progress messages with the code "kernels" say so. A live pipeline's latency does not count that.

@@ -23,6 +23,7 @@ enum : guint {
     Iterations,
     Calibration,
     Steady,
+    Prefer,
     End,
 };
 } // namespace property
@@ -45,6 +46,20 @@ GType gst_depth_method_get_type()
         {0, nullptr, nullptr},
     };
     static const GType type = g_enum_register_static("GstDepthMethod", values);
+    return type;
+}
+
+#define GST_TYPE_DEPTH_PREFERENCE (gst_depth_preference_get_type())
+
+GType gst_depth_preference_get_type()
+{
+    static const GEnumValue values[] = {
+        {static_cast<int>(Prefer::Clearest), "The one of which there is more to see", "clearest"},
+        {static_cast<int>(Prefer::Near), "The nearer one", "near"},
+        {static_cast<int>(Prefer::Far), "The farther one", "far"},
+        {0, nullptr, nullptr},
+    };
+    static const GType type = g_enum_register_static("GstDepthPreference", values);
     return type;
 }
 
@@ -150,6 +165,11 @@ void install_depth_properties(GObjectClass *object_class)
                           "Keeps depth from flickering where the picture stands still: the mean of up to 16 "
                           "stacks. What moves has the depth of the last stack alone",
                           GST_TYPE_DEPTH_STEADINESS, static_cast<int>(defaults.steady), playing));
+    install(property::Prefer,
+            g_param_spec_enum("prefer", "Prefer",
+                              "Of method=volume: what has the depth where something farther is seen through "
+                              "something thin and near, as hairs or a net",
+                              GST_TYPE_DEPTH_PREFERENCE, static_cast<int>(p.prefer), playing));
 }
 
 bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
@@ -197,6 +217,9 @@ bool set_depth_property(DepthSettings &settings, guint id, const GValue *value)
         return true;
     case property::Steady:
         settings.steady = static_cast<Steadiness>(g_value_get_enum(value));
+        return true;
+    case property::Prefer:
+        p.prefer = static_cast<Prefer>(g_value_get_enum(value));
         return true;
     case property::Calibration:
         settings.calibration = g_value_get_string(value) ? g_value_get_string(value) : "";
@@ -251,6 +274,9 @@ bool get_depth_property(const DepthSettings &settings, guint id, GValue *value)
         return true;
     case property::Steady:
         g_value_set_enum(value, static_cast<int>(settings.steady));
+        return true;
+    case property::Prefer:
+        g_value_set_enum(value, static_cast<int>(p.prefer));
         return true;
     case property::Calibration:
         g_value_set_string(value, settings.calibration.c_str());

@@ -22,7 +22,7 @@ struct DepthSettings {
 };
 
 /* The properties of dffdepth, from 1 to depth_properties_end - 1. */
-constexpr guint depth_properties_end = 16;
+constexpr guint depth_properties_end = 17;
 
 void install_depth_properties(GObjectClass *object_class);
 

@@ -48,14 +48,6 @@ uint64_t CostVolume::scratch_bytes(const LowShape &low)
     return static_cast<uint64_t>(low.stride) * coarse_rows(low) * sizeof(cl_ushort);
 }
 
-void CostVolume::run(const cl::Buffer &focus, const SmallPlanes &small, const NoiseEstimate &noise,
-                     float blur_step)
-{
-    run_fine(focus, noise);
-    run_coarse(small, noise, blur_step);
-    run_guess(noise);
-}
-
 void CostVolume::run_fine(const cl::Buffer &focus, const NoiseEstimate &noise)
 {
     queue_.begin_stage("cost");

@@ -15,8 +15,13 @@ public:
     /* Of device memory, beside pictures. */
     static uint64_t scratch_bytes(const LowShape &low);
 
-    /* focus: low pictures short [z]; blur_step: pixels a plane. */
-    void run(const cl::Buffer &focus, const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
+    /* In this order. focus: low pictures short [z]; blur_step: pixels a plane. C is C0 after the first. */
+    void run_fine(const cl::Buffer &focus, const NoiseEstimate &noise);
+    void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
+    void run_guess(const NoiseEstimate &noise);
+
+    const cl::Buffer &top() const { return top_; }            /* low picture float: T0, 1/FOCUS_ONE DN */
+    const cl::Buffer &median_top() const { return medians_; } /* float: med T0, DN; and more */
 
     /* Low pictures short, their sides mirrored. */
     const cl::Buffer &cost() const { return cost_; }         /* [z]: C */
@@ -28,11 +33,6 @@ public:
 
     /* float: the largest S0 of any cell, DN. */
     const cl::Buffer &evidence() const { return largest_range_; }
-
-    /* The parts of run(). C is C0 after the first. */
-    void run_fine(const cl::Buffer &focus, const NoiseEstimate &noise);
-    void run_coarse(const SmallPlanes &small, const NoiseEstimate &noise, float blur_step);
-    void run_guess(const NoiseEstimate &noise);
 
     /* Cells between the values of F1 that F2 is the mean of: blur reaches as far as a part of the picture's
      * width. */

@@ -12,6 +12,13 @@ enum class Method {
     Paper,  /* decide for each pixel, then spread the decisions: Oliva-García 2022, section 2.3 */
 };
 
+/* What a place is of where something farther is seen through something thin and near. */
+enum class Prefer {
+    Clearest, /* the one with more to see */
+    Near,
+    Far,
+};
+
 struct DepthParameters {
     Method method = Method::Volume;
     bool motion_mask = true;   /* leave pixels that moved during the sweep out of the sparse map (3) */
@@ -25,6 +32,7 @@ struct DepthParameters {
     /* Of method=volume: pixels of the stack a cell of the volume, in each direction: 2, 4 or 8; 0 = 2 up to
      * 800x600 pixels and 4 above. */
     unsigned scale = 0;
+    Prefer prefer = Prefer::Clearest;
 };
 
 } // namespace dff

@@ -31,7 +31,8 @@ struct VolumeMethod::Stages {
     SubPlane sub_plane;
     DepthFill fill;
     JointUpsampling upsampling;
-    std::optional<Uncertainty> uncertainty; /* once it was wanted */
+    std::optional<SeenThrough> seen_through; /* once one was preferred */
+    std::optional<Uncertainty> uncertainty;  /* once it was wanted */
 };
 
 VolumeMethod::VolumeMethod(CommandQueue &queue, const StackShape &shape, const DepthParameters &parameters)
@@ -94,7 +95,14 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
         measure(stack.as_new());
     }
     Stages &s = *stages_;
-    s.cost.run(s.floor.run(s.focus, s.small, s.noise), s.small, s.noise, blur_.step);
+    s.cost.run_fine(s.floor.run(s.focus, s.small, s.noise), s.noise);
+    s.cost.run_coarse(s.small, s.noise, blur_.step);
+    if (parameters_.prefer != Prefer::Clearest) {
+        if (!s.seen_through)
+            s.seen_through.emplace(queue_, s.low);
+        s.seen_through->run(s.cost, s.noise, parameters_.prefer);
+    }
+    s.cost.run_guess(s.noise);
     s.guide.run(s.cost, s.small, s.noise);
     s.filter.run(s.cost.cost(), s.guide.guide(), s.noise);
     s.filter.doubt(s.guide.nearer(), s.noise);

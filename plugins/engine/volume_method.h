@@ -9,6 +9,7 @@
 #include "engine/joint_upsampling.h"
 #include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
+#include "engine/seen_through.h"
 #include "engine/sub_plane.h"
 #include "engine/uncertainty.h"
 

@@ -43,8 +43,8 @@ double peak_memory()
 /* Depth and all-in-focus picture of one method. */
 class Pipeline {
 public:
-    Pipeline(const BenchStack &stack, Method method)
-        : stack_(stack), engine_(Device::open(""), stack.shape, parameters_of(method)),
+    Pipeline(const BenchStack &stack, Method method, Prefer prefer = Prefer::Clearest)
+        : stack_(stack), engine_(Device::open(""), stack.shape, parameters_of(method, prefer)),
           composer_(Device::open(""), stack.shape), depth_(size_t{stack.shape.width} * stack.shape.height),
           picture_(stack.memory.size() / stack.shape.planes),
           layout_(packed_layout({stack.shape.format, stack.shape.width, stack.shape.height, 1}))
@@ -90,10 +90,11 @@ public:
     }
 
 private:
-    static DepthParameters parameters_of(Method method)
+    static DepthParameters parameters_of(Method method, Prefer prefer)
     {
         DepthParameters parameters;
         parameters.method = method;
+        parameters.prefer = prefer;
         return parameters;
     }
 
@@ -132,6 +133,9 @@ public:
                          [this] { return volume_.compose(AifComposer::Blend::Sharp); }});
         add_time();
         if (c.with_others) {
+            preferring_ = std::make_unique<Pipeline>(stack_, Method::Volume, Prefer::Near);
+            rows_.push_back({"method=volume prefer=near", Row::Kind::Part, 3,
+                             [this] { return preferring_->run_depth(); }});
             add_deep_colour();
             add_others();
         }
@@ -216,7 +220,7 @@ private:
     std::vector<std::byte> copy_;
     Pipeline paper_, volume_;
     std::unique_ptr<BenchStack> deep_stack_;
-    std::unique_ptr<Pipeline> deep_paper_, deep_volume_;
+    std::unique_ptr<Pipeline> deep_paper_, deep_volume_, preferring_;
 #ifdef HAVE_XIMGPROC
     std::unique_ptr<OpencvSolver> solver_;
 #endif

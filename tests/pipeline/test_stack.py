@@ -15,6 +15,7 @@ import unittest
 import numpy as np
 import OpenImageIO as oiio
 
+import net
 from slope import HEIGHT, PLANES, WIDTH, blurred, plane, sharp
 from sweeps import SECONDS, Folders, write
 
@@ -222,6 +223,26 @@ class Results(Program):
         self.stack(self.photos, '-o', self.out / 'a.png', '--preview')
         spec, pixels = read(self.out / 'a.png')
         self.assertEqual((spec.width, spec.height), (WIDTH, HEIGHT))
+
+
+class SeenThrough(Program):
+    def test_what_is_preferred_is_kept(self):
+        pictures, ground = net.sweep()
+        for number, pixels in enumerate(pictures):
+            write(self.photos / f'{number}.png', pixels)
+        threads = net.threads()[:, :, 0] > 0
+        inner = np.zeros_like(threads)
+        inner[24:-24, 24:-24] = True
+        beside = inner & (sum(np.roll(threads, shift, axis) for axis in (0, 1) for shift in range(-10, 11)) == 0)
+        for preferred, plane, share, tones in (('near', net.NEAR, 0.75, np.array(net.TONE)), ('far', net.FAR, 0.9, ground[threads & inner])):
+            self.stack(self.photos, '-o', self.out / 'a.png', '--depth', self.out / 'z.tif', '--align', 'off', '--even', 'off',
+                       '--prefer', preferred)
+            depth, picture = read(self.out / 'z.tif')[1][:, :, 0], read(self.out / 'a.png')[1].astype(float)
+            with self.subTest(preferred):
+                self.assertGreater(np.mean(np.abs(depth - plane)[threads & inner] < 1), share)
+                self.assertGreater(np.mean(np.abs(depth - net.FAR)[beside] < 1), 0.97)
+                self.assertLess(np.abs(picture[threads & inner] - tones).mean(), 18)
+                self.assertLess(np.abs(picture - ground)[beside].mean(), 4)
 
 
 class Failing(Program):

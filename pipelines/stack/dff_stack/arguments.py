@@ -34,6 +34,11 @@ RESULTS
   --cloud, --mesh  in micrometres where the step and the size of a pixel are known; else the depth is stretched to a fifth of the
             width. The mesh is one unit wide, and torn where depth jumps.
 
+SEEN THROUGH
+  Hairs, antennae and nets are out of focus in the picture of what lies behind them, which shows through: both are sharp in some
+  picture. Of the two that of which there is more to see is kept; --prefer near keeps what is thin, --prefer far the ground. Beside
+  edges of what is not thin, near makes it a little larger and far a little smaller.
+
 MEMORY
   What does not fit is computed in slabs of pictures that overlap, whose results become a stack of their own, and in tiles
   side by side. --memory says how much may be used; without it 60 % of what is free. What waits for its turn lies in TMPDIR.
@@ -122,6 +127,8 @@ def add_work(group):
     group.add_argument('--use-alignment', metavar='FILE', help='take that of another sweep of the same rig')
     group.add_argument('--even', choices=('on', 'off'), default='on', help='give all pictures one brightness (%(default)s)')
     group.add_argument('--bad-pixels', choices=('on', 'off'), default='on', help='mend those of the sensor (%(default)s)')
+    group.add_argument('--prefer', choices=('clearest', 'near', 'far'), default='clearest',
+                       help='what is kept where the ground is seen through something thin and near, as hairs or a net (%(default)s)')
     group.add_argument('--memory', metavar='SIZE', type=amount, help='use at most this much, as 6G or 800M')
     group.add_argument('--preview', action='store_true', help='a quarter of the size, in seconds')
     group.add_argument('--quiet', action='store_true', help='say nothing but what is wrong')

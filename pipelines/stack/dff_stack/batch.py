@@ -100,7 +100,8 @@ def on_cluster(stacks, passed_on, scheduler, workers):
 
 def passed_on(options, shares):
     """What of the options each stack gets."""
-    words = [f'--order={options.order}', f'--align={options.align}', f'--even={options.even}', f'--bad-pixels={options.bad_pixels}']
+    words = [f'--order={options.order}', f'--align={options.align}', f'--even={options.even}', f'--bad-pixels={options.bad_pixels}',
+             f'--prefer={options.prefer}']
     words += ['--far-first'] * options.far_first + ['--preview'] * options.preview
     words += [f'--step={options.step!r}'] if options.step else []
     words += ['--use-alignment', str(pathlib.Path(options.use_alignment).resolve())] if options.use_alignment else []

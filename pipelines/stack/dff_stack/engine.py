@@ -174,16 +174,16 @@ def quoted(text):
     return '"' + str(text).replace('\\', '\\\\').replace('"', '\\"') + '"'
 
 
-def solve(planes, count, encoding, size, calibration, even, tell):
+def solve(planes, count, encoding, size, calibration, work):
     """Depth and the picture of a stack. `calibration` is a file with the planes' warps, or None where they lie as they should."""
     width, height = size
     align = ''
     if calibration:
-        align = f'! focalstackalign mode=calibration calibration={quoted(calibration)} even-brightness={str(even).lower()}'
-    description = (f'{SOURCE} {align} ! tee name=s  s. ! queue ! dffdepth name=d unit=index  d.src ! tee name=t '
+        align = f'! focalstackalign mode=calibration calibration={quoted(calibration)} even-brightness={str(work.even).lower()}'
+    description = (f'{SOURCE} {align} ! tee name=s  s. ! queue ! dffdepth name=d unit=index prefer={work.prefer}  d.src ! tee name=t '
                    f't. ! {sink("depth")}  t. ! queue ! c.depth  d.confidence ! {sink("confidence")} '
                    f's. ! queue ! c.stack  aifcompose name=c blend=sharp ! {sink("picture")}')
-    with running(description, tell) as run:
+    with running(description, work.tell) as run:
         buffer = stack_buffer(planes, count, encoding, width, height)
         picture, depth, confidence = run.results(buffer, caps_of(encoding, width, height, count), ('picture', 'depth', 'confidence'))
         del buffer

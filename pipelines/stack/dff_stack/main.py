@@ -77,7 +77,7 @@ def process(options, progress, tell):
     with results.together() as files:
         warps = warps_of(options, found, look, say, progress)
         look.keep_small()
-        work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'))
+        work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'), options.prefer)
         solved = solve.solve(found, warps, work)
         progress.begin('Writing', 1)
         output.Output(options, found, look, solved, warps, pixel_um, said).write(files)

@@ -17,6 +17,7 @@ class Work:
     even: bool            # brightness
     progress: object
     tell: object          # called with a warning of an element
+    prefer: str = 'clearest'  # of dffdepth: near or far where one is seen through the other
     scratch: str | None = None  # folder for what does not fit into memory
 
 
@@ -53,7 +54,7 @@ def solve_part(frames, warps, work, encoding, size):
         if warps is not None:
             calibration = pathlib.Path(folder, 'alignment.json')
             calibration.write_text(alignment.text_of(warps, *size))
-        return engine.solve(frames, len(frames), encoding, size, calibration, work.even, work.tell)
+        return engine.solve(frames, len(frames), encoding, size, calibration, work)
 
 
 class Frames:

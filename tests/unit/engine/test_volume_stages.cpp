@@ -4,6 +4,8 @@
  * Each kernel of method=volume against its twin, fed with what the device's stage before it gave. */
 #include "volume_stages.h"
 
+#include <random>
+
 using namespace dff;
 
 TEST_P(VolumeStages, evidence_agrees_with_its_twins)
@@ -56,6 +58,12 @@ TEST_P(VolumeStages, what_follows_the_blur_agrees_with_its_twins)
     run_to_matching();
     expect_occlusion_doubt();
     expect_sub_plane();
+}
+
+TEST_P(VolumeStages, what_is_seen_through_agrees_with_its_twin)
+{
+    expect_seen_through(Prefer::Near);
+    expect_seen_through(Prefer::Far);
 }
 
 Volume VolumeStages::read_level(const cl::Buffer &buffer_on_device, const LowShape &level, float one)
@@ -125,6 +133,26 @@ void VolumeStages::expect_occlusion_doubt()
     expect_mostly(doubted, twin::doubt_nearer_side(confidence, u, cost, far_planes, low.scale, noise.t),
                   5e-3f);
     EXPECT_TRUE(shape.planes == 2 || doubted.values != confidence.values);
+}
+
+/* Of costs that rise and fall as they like. */
+void VolumeStages::expect_seen_through(Prefer prefer)
+{
+    cost_stage.run_fine(focus_stage.volume(), noise_stage);
+    std::vector<cl_short> cells(size_t{1} * shape.planes * low.height * low.stride);
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int> costs(0, 1433);
+    for (cl_short &cell : cells)
+        cell = static_cast<cl_short>(costs(random));
+    queue.commands().enqueueWriteBuffer(cost_stage.cost(), CL_TRUE, 0, cells.size() * sizeof(cl_short),
+                                        cells.data());
+    const Volume cost = read_shorts(cost_stage.cost(), shape.planes, 1);
+    const Volume top = read_cells<float>(cost_stage.top(), 1.0f / 32, 1);
+    const float median = read_back<float>(queue, cost_stage.median_top(), 1)[0];
+    SeenThrough(queue, low).run(cost_stage, noise_stage, prefer);
+    const Volume found = read_shorts(cost_stage.cost(), shape.planes, 1);
+    expect_mostly(found, twin::prefer(cost, top, median, noise.t, prefer == Prefer::Far), 0.5f);
+    EXPECT_TRUE(shape.planes < 3 || found.values != cost.values);
 }
 
 void VolumeStages::expect_sub_plane()

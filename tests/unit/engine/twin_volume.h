@@ -35,6 +35,8 @@ Volume nearest_3x3(const Volume &u);
 Colours blend(const Colours &small, const Volume &u, float t);
 Colours denoise(const Colours &guide, float sigma, unsigned scale);
 Volume guided_filter(const Volume &cost, const Colours &guide, float t);
+/* kernels/seen_through.cl; costs in 1024ths, the others in DN. */
+Volume prefer(const Volume &cost, const Volume &top, float median_top, float t, bool from_far);
 Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t);
 Volume match(const Volume &cost, const Colours &guide, float t);
 Volume decide(const Volume &total, float t);

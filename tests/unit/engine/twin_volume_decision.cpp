@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace dff::twin {
 
@@ -194,6 +195,61 @@ Volume doubt_nearer(const Volume &filtered, const Volume &nearer, float t)
             const float doubt = std::clamp(nearer.at(x, y) - static_cast<float>(best) - 1.0f, 0.0f, 1.0f);
             for (unsigned z = 0; z < filtered.planes; z++)
                 result.at(x, y, z) *= 1.0f - (1.0f - t) * doubt;
+        }
+    return result;
+}
+
+namespace {
+
+/* Whether nothing from p on, one step after the other, is lower before something is higher by `rise`; where
+ * that is, or beyond the end. */
+std::pair<bool, int> rises(const std::vector<float> &cost, int p, int step, float rise)
+{
+    const int count = static_cast<int>(cost.size());
+    for (int q = p + step; q >= 0 && q < count; q += step) {
+        if (cost[q] < cost[p] || (step < 0 && cost[q] == cost[p]))
+            return {false, q};
+        if (cost[q] >= cost[p] + rise)
+            return {true, q};
+    }
+    return {true, step < 0 ? -1 : count};
+}
+
+void prefer_first(std::vector<float> &cost, float rise)
+{
+    const int count = static_cast<int>(cost.size());
+    for (int p = 0; p < count; p++) {
+        const auto [is_low, end] = rises(cost, p, 1, rise);
+        if (!is_low || end == count || !rises(cost, p, -1, rise).first)
+            continue;
+        bool has_another = false;
+        float highest = cost[end];
+        for (int i = end; i < count; i++) {
+            highest = std::max(highest, cost[i]);
+            has_another |= highest - cost[i] >= rise;
+        }
+        const float floor = cost[p];
+        for (int i = 0; has_another && i < count; i++)
+            cost[i] = i < end ? std::max(cost[i] - floor, 0.0f) : std::max(cost[i], 1228.0f);
+        return;
+    }
+}
+
+} // namespace
+
+Volume prefer(const Volume &cost, const Volume &top, float median_top, float t, bool from_far)
+{
+    const float q = (0.4f + 0.35f * t) * median_top + 1.5f + 2.5f * t;
+    Volume result = cost;
+    for (unsigned y = 0; y < cost.height; y++)
+        for (unsigned x = 0; x < cost.width; x++) {
+            std::vector<float> along(cost.planes);
+            const auto plane = [&](unsigned i) { return from_far ? cost.planes - 1 - i : i; };
+            for (unsigned i = 0; i < cost.planes; i++)
+                along[i] = cost.at(x, y, plane(i));
+            prefer_first(along, std::round(1024.0f * q / (top.at(x, y) + q)));
+            for (unsigned i = 0; i < cost.planes; i++)
+                result.at(x, y, plane(i)) = along[i];
         }
     return result;
 }

@@ -7,6 +7,7 @@
 #include "engine/joint_upsampling.h"
 #include "engine/noise_floor.h"
 #include "engine/occlusion_doubt.h"
+#include "engine/seen_through.h"
 #include "engine/sub_plane.h"
 #include "engine/uncertainty.h"
 #include "twin_volume.h"
@@ -133,7 +134,9 @@ protected:
     /* Runs everything up to the matching. */
     void run_to_matching()
     {
-        cost_stage.run(focus_stage.volume(), small_stage, noise_stage, close_planes);
+        cost_stage.run_fine(focus_stage.volume(), noise_stage);
+        cost_stage.run_coarse(small_stage, noise_stage, close_planes);
+        cost_stage.run_guess(noise_stage);
         guide_stage.run(cost_stage, small_stage, noise_stage);
         filter_stage.run(cost_stage.cost(), guide_stage.guide(), noise_stage);
         filter_stage.doubt(guide_stage.nearer(), noise_stage);
@@ -148,6 +151,7 @@ protected:
     void expect_falls();
     void expect_no_leak();
     void expect_occlusion_doubt();
+    void expect_seen_through(Prefer prefer);
     void expect_sub_plane();
     void expect_small_planes_and_focus_volume();
     void expect_even_noise();
