@@ -143,12 +143,26 @@ private:
         gst_object_unref(out);
     }
 
-    void seek(GstElement *what, const std::string &name)
+    GstEvent *new_seek()
     {
-        note("seek " + name);
-        gst_element_send_event(what, gst_event_new_seek(1.0, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
-                                                        GST_SEEK_TYPE_SET, pick(4) * GST_SECOND,
-                                                        GST_SEEK_TYPE_NONE, -1));
+        return gst_event_new_seek(1.0, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                                  pick(4) * GST_SECOND, GST_SEEK_TYPE_NONE, -1);
+    }
+
+    void seek_all()
+    {
+        note("seek all");
+        gst_element_send_event(pipeline_, new_seek());
+    }
+
+    /* By its pad: gst_element_send_event() holds the state lock of the source while the flush makes the
+     * pipeline ask for its own, which a state change in another thread holds while it waits for the
+     * source's. */
+    void seek(unsigned i)
+    {
+        note("seek " + std::to_string(i));
+        g_autoptr(GstPad) pad = gst_element_get_static_pad(element("s", i), "src");
+        gst_pad_send_event(pad, new_seek());
     }
 
     void change_caps(unsigned i, unsigned width)
@@ -217,9 +231,9 @@ private:
         const unsigned i = pick(sources_);
         switch (pick(12)) {
         case 0:
-            return seek(element("s", i), std::to_string(i));
+            return seek(i);
         case 1:
-            return seek(pipeline_, "all");
+            return seek_all();
         case 2:
             note("end of " + std::to_string(i));
             disturbances_[i].end = true;
