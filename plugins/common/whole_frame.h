@@ -29,4 +29,21 @@ inline bool is_whole(const GstVideoFrame &frame, const GstVideoInfo &caps)
     return true;
 }
 
+/* Maps a frame that is whole; false, and nothing is mapped, if it is not. gst_video_frame_map() calls it a
+ * fault of the program, which is logged as critical, where a GstVideoMeta is smaller than the caps. */
+inline bool map_whole(GstVideoFrame &frame, const GstVideoInfo &caps, GstBuffer *buffer, GstMapFlags flags)
+{
+    const GstVideoMeta *meta = gst_buffer_get_video_meta(buffer);
+    if (meta && (meta->format != GST_VIDEO_INFO_FORMAT(&caps) ||
+                 meta->width != static_cast<guint>(GST_VIDEO_INFO_WIDTH(&caps)) ||
+                 meta->height != static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&caps))))
+        return false;
+    if (!gst_video_frame_map(&frame, &caps, buffer, flags))
+        return false;
+    if (is_whole(frame, caps))
+        return true;
+    gst_video_frame_unmap(&frame);
+    return false;
+}
+
 } // namespace dff

@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depthio/mapped_picture.h"
 
+#include "common/whole_frame.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -9,7 +11,7 @@ namespace dff {
 
 MappedPicture::MappedPicture(GstBuffer *buffer, const GstVideoInfo &info)
 {
-    if (!gst_video_frame_map(&frame_, &info, buffer, GST_MAP_READ))
+    if (!map_whole(frame_, info, buffer, GST_MAP_READ))
         throw std::runtime_error("A buffer of " + std::to_string(gst_buffer_get_size(buffer)) +
                                  " bytes does not hold the picture its caps describe");
 }

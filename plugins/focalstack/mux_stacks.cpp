@@ -93,13 +93,11 @@ GstFlowReturn MuxCore::use_shape(const MuxInput &input, const GstFocalStackInfo 
 GstFlowReturn MuxCore::put(const MuxInput &input, PlaneFrame &frame)
 {
     GstVideoFrame picture;
-    if (!gst_video_frame_map(&picture, &input.info, frame.buffer, GST_MAP_READ)) {
-        refuse_damaged(frame, describe_misfit(input.info, gst_buffer_get_size(frame.buffer)));
-        return GST_FLOW_OK;
-    }
-    if (!is_whole(picture, input.info)) {
-        gst_video_frame_unmap(&picture);
-        refuse_damaged(frame, "its GstVideoMeta has another size than its caps, or leads out of its memory");
+    if (!map_whole(picture, input.info, frame.buffer, GST_MAP_READ)) {
+        const bool described = gst_buffer_get_video_meta(frame.buffer) != nullptr;
+        refuse_damaged(
+            frame, described ? "its GstVideoMeta has another size than its caps, or leads out of its memory"
+                             : describe_misfit(input.info, gst_buffer_get_size(frame.buffer)));
         return GST_FLOW_OK;
     }
     frame.picture = &picture;

@@ -10,13 +10,12 @@ namespace dff {
 
 MappedFrame::MappedFrame(const GstVideoInfo &info, GstBuffer *buffer, GstMapFlags flags)
 {
-    if (!gst_video_frame_map(&frame_, &info, buffer, flags))
-        throw std::runtime_error("A frame's memory does not hold what its caps say");
-    if (is_whole(frame_, info))
+    if (map_whole(frame_, info, buffer, flags))
         return;
-    gst_video_frame_unmap(&frame_);
     throw std::runtime_error(
-        "A frame's GstVideoMeta has another size than its caps, or leads out of its memory");
+        gst_buffer_get_video_meta(buffer)
+            ? "A frame's GstVideoMeta has another size than its caps, or leads out of its memory"
+            : "A frame's memory does not hold what its caps say");
 }
 
 std::span<std::byte> MappedFrame::memory() const

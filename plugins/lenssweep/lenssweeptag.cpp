@@ -50,6 +50,7 @@
 #include "block_sharpness.h"
 #include "common/checked_properties.h"
 #include "common/running_time.h"
+#include "common/whole_frame.h"
 #include "element_property.h"
 #include "monotonic_lead.h"
 #include "sweep_tagger.h"
@@ -155,7 +156,7 @@ static std::optional<GstVideoInfo> measurable_video(const GstCaps *caps)
 static std::vector<double> sharpness_of(const GstVideoInfo &info, GstBuffer *buffer)
 {
     GstVideoFrame frame;
-    if (!gst_video_frame_map(&frame, &info, buffer, GST_MAP_READ))
+    if (!dff::map_whole(frame, info, buffer, GST_MAP_READ))
         return {};
     const PictureView picture{static_cast<const guint8 *>(GST_VIDEO_FRAME_COMP_DATA(&frame, 0)),
                               static_cast<unsigned>(GST_VIDEO_FRAME_COMP_WIDTH(&frame, 0)),

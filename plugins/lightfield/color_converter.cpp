@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "color_converter.h"
 
+#include "common/whole_frame.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -14,7 +16,7 @@ class Frame {
 public:
     Frame(const GstVideoInfo &info, GstBuffer *buffer, GstMapFlags flags)
     {
-        if (!gst_video_frame_map(&frame, &info, buffer, flags))
+        if (!map_whole(frame, info, buffer, flags))
             throw std::runtime_error("A frame's memory does not hold what its caps say");
     }
     ~Frame() { gst_video_frame_unmap(&frame); }

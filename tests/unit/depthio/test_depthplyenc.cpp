@@ -230,6 +230,34 @@ TEST(DepthPlyEnc, a_microscope_without_size_or_heights_is_told_what_to_give)
     EXPECT_NE(stage_cloud("", false).error.find("stage positions"), std::string::npos);
 }
 
+TEST(DepthPlyEnc, pictures_whose_layout_lies_are_refused)
+{
+    const GLogLevelFlags fatal =
+        g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL));
+    const Calibration calibration("0, 0, 0, 0, 0");
+    const auto lies = std::to_array<void (*)(GstVideoMeta *)>({
+        [](GstVideoMeta *meta) { meta->stride[0] = G_MAXINT; },
+        [](GstVideoMeta *meta) { meta->offset[0] = 1; },
+        [](GstVideoMeta *meta) { meta->width *= 2; },
+        [](GstVideoMeta *meta) { meta->height /= 2; },
+        [](GstVideoMeta *meta) { meta->format = GST_VIDEO_FORMAT_GRAY8; },
+    });
+    for (const auto lie : lies)
+        for (const bool of_colour : {true, false}) {
+            Buffer colour = colour_frame(width, height, colour_at);
+            Buffer depth = depth_frame(width, height, depth_at);
+            lie(of_colour ? gst_buffer_add_video_meta(colour.get(), GST_VIDEO_FRAME_FLAG_NONE,
+                                                      GST_VIDEO_FORMAT_RGB, width, height)
+                          : gst_buffer_add_video_meta(depth.get(), GST_VIDEO_FRAME_FLAG_NONE,
+                                                      GST_VIDEO_FORMAT_GRAY16_LE, width, height));
+            const EncodedFile file = encode_file("depthplyenc calibration=" + calibration.file, width, height,
+                                                 std::move(colour), std::move(depth), dioptres);
+            EXPECT_NE(file.error.find("does not hold the picture its caps describe"), std::string::npos)
+                << file.error;
+        }
+    g_log_set_always_fatal(fatal);
+}
+
 TEST(DepthPlyEnc, pictures_of_two_sizes_are_refused_by_name)
 {
     g_autoptr(GstElement) pipeline = gst_parse_launch(

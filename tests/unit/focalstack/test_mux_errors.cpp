@@ -169,6 +169,8 @@ TEST(MuxErrors, frames_whose_layout_lies_are_left_out)
         [](GstVideoMeta *meta) { meta->width = 64; },
         [](GstVideoMeta *meta) { meta->height = 8; },
     });
+    const GLogLevelFlags fatal =
+        g_log_set_always_fatal(static_cast<GLogLevelFlags>(G_LOG_FATAL_MASK | G_LOG_LEVEL_CRITICAL));
     const Owned<GstHarness> harness(gst_harness_new_parse("focalstackmux"));
     gst_harness_set_src_caps_str(harness.get(), frame_caps("GRAY8", 32, 16).c_str());
     for (size_t i = 0; i < lies.size(); i++) {
@@ -179,6 +181,7 @@ TEST(MuxErrors, frames_whose_layout_lies_are_left_out)
     GstElement *mux = gst_harness_find_element(harness.get(), "focalstackmux");
     EXPECT_EQ(count_of(mux, "damaged"), lies.size());
     gst_object_unref(mux);
+    g_log_set_always_fatal(fatal);
 }
 
 TEST(MuxErrors, planes_other_than_the_frames_say_is_an_error)
