@@ -274,13 +274,24 @@ void MuxCore::end_if_due(GstEvent *eos, const MuxInput *last)
         const std::lock_guard lock(stream_);
         if (end_is_due()) {
             finish_and_tell(last);
-            ended_ = true;
-            output_.end(eos ? eos : gst_event_new_eos());
+            send_end(eos ? eos : gst_event_new_eos(), last);
             return;
         }
     }
     if (eos)
         gst_event_unref(eos);
+}
+
+/* Like a stack, an end may be held up by a sink that is paused. */
+void MuxCore::send_end(GstEvent *eos, const MuxInput *last)
+{
+    if (!inputs_.begin_push(last)) {
+        gst_event_unref(eos);
+        return;
+    }
+    ended_ = true;
+    output_.end(eos);
+    inputs_.end_push();
 }
 
 void MuxCore::finish_and_tell(const MuxInput *input)

@@ -91,6 +91,7 @@ private:
     void refuse_damaged(const PlaneFrame &frame, const std::string &why);
     GstFlowReturn send_outcomes(const MuxInput *input);
     GstFlowReturn finish(const MuxInput *input);
+    void send_end(GstEvent *eos, const MuxInput *last);
     void finish_and_tell(const MuxInput *input);
     void update_latency(const GstFocalStackInfo &shape);
     void publish();

@@ -2,10 +2,14 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "support.h"
 
+#include <atomic>
+#include <chrono>
+#include <future>
 #include <glib/gstdio.h>
 #include <gst/app/gstappsink.h>
 #include <gtest/gtest.h>
 #include <optional>
+#include <thread>
 #include <unistd.h>
 
 /* Sources of one plane each, of which one does what the others do not. */
@@ -155,6 +159,90 @@ TEST(MuxPlanes, a_source_that_begins_again_after_the_end_is_heard)
     ASSERT_TRUE(planes.seek("a", 0, five_frames));
     EXPECT_EQ(planes.pull_all(), 5u);
     EXPECT_EQ(planes.outcome(), "end");
+}
+
+namespace {
+
+/* A mux without sources, whose end is held up as by a paused sink. */
+class HeldEnd {
+public:
+    HeldEnd() : mux_(gst_element_factory_make("focalstackmux", nullptr))
+    {
+        g_object_set(mux_, "planes", 2, nullptr);
+        for (unsigned i = 0; i < 2; i++) {
+            const std::string name = "sink_" + std::to_string(i);
+            g_autoptr(GstPad) sink = gst_element_request_pad_simple(mux_, name.c_str());
+            sources_[i] = gst_pad_new(nullptr, GST_PAD_SRC);
+            gst_pad_set_active(sources_[i], TRUE);
+            gst_pad_link(sources_[i], sink);
+        }
+        g_autoptr(GstPad) source = gst_element_get_static_pad(mux_, "src");
+        probe_ = gst_pad_add_probe(
+            source,
+            static_cast<GstPadProbeType>(GST_PAD_PROBE_TYPE_BLOCK | GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM),
+            &HeldEnd::hold, this, nullptr);
+        gst_element_set_state(mux_, GST_STATE_PLAYING);
+    }
+    ~HeldEnd()
+    {
+        g_autoptr(GstPad) source = gst_element_get_static_pad(mux_, "src");
+        gst_pad_remove_probe(source, probe_);
+        gst_element_set_state(mux_, GST_STATE_NULL);
+        for (GstPad *pad : sources_)
+            gst_object_unref(pad);
+        gst_object_unref(mux_);
+    }
+    HeldEnd(const HeldEnd &) = delete;
+    HeldEnd &operator=(const HeldEnd &) = delete;
+
+    void begin(unsigned i)
+    {
+        GstSegment segment;
+        gst_segment_init(&segment, GST_FORMAT_TIME);
+        g_autoptr(GstCaps) caps = gst_caps_from_string(picture.c_str());
+        push(i, gst_event_new_stream_start(i == 0 ? "a" : "b"));
+        push(i, gst_event_new_caps(caps));
+        push(i, gst_event_new_segment(&segment));
+    }
+    void push(unsigned i, GstEvent *event) { gst_pad_push_event(sources_[i], event); }
+
+    void wait_until_held()
+    {
+        while (!held_)
+            std::this_thread::yield();
+    }
+
+private:
+    static GstPadProbeReturn hold(GstPad *, GstPadProbeInfo *info, gpointer self)
+    {
+        if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) != GST_EVENT_EOS)
+            return GST_PAD_PROBE_PASS;
+        static_cast<HeldEnd *>(self)->held_ = true;
+        return GST_PAD_PROBE_OK;
+    }
+
+    GstElement *mux_;
+    GstPad *sources_[2] = {};
+    gulong probe_ = 0;
+    std::atomic<bool> held_ = false;
+};
+
+} // namespace
+
+/* Otherwise the thread that brought the end could not be had back. */
+TEST(MuxPlanes, a_flush_of_the_source_whose_end_is_held_up_downstream_frees_it)
+{
+    std::future<void> end, again;
+    HeldEnd mux;
+    mux.begin(0);
+    mux.begin(1);
+    mux.push(1, gst_event_new_eos());
+    end = std::async(std::launch::async, [&] { mux.push(0, gst_event_new_eos()); });
+    mux.wait_until_held();
+    again = std::async(std::launch::async, [&] { mux.push(1, gst_event_new_stream_start("b again")); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    mux.push(0, gst_event_new_flush_start());
+    EXPECT_EQ(end.wait_for(std::chrono::seconds(5)), std::future_status::ready);
 }
 
 TEST(MuxPlanes, the_end_comes_when_the_last_open_source_is_taken_away)

@@ -11,6 +11,8 @@
 #include <gst/app/gstappsink.h>
 #include <gtest/gtest.h>
 #include <random>
+#include <stop_token>
+#include <thread>
 
 /* Random walks through what applications do to a mux: nothing may hang, crash or be called critical.
  * DFF_WALKS sets how many, DFF_SEED the first seed. */
@@ -95,6 +97,7 @@ public:
 
     void run()
     {
+        const std::jthread puller([this](const std::stop_token &stop) { pull_until(stop); });
         set_state(GST_STATE_PLAYING);
         for (unsigned k = 0; k < steps; k++)
             step();
@@ -133,14 +136,22 @@ private:
         gst_element_set_state(pipeline_, state);
     }
 
-    void pull()
+    /* Slower than the sources, so that the mux is held up. Somebody must pull at any time: an appsink that is
+     * full holds the lock that its next change of state needs. */
+    void pull_until(const std::stop_token &stop) const
     {
-        note("pull");
         GstElement *out = gst_bin_get_by_name(GST_BIN(pipeline_), "out");
-        for (unsigned k = 0; k < 5; k++) {
+        while (!stop.stop_requested()) {
             g_autoptr(GstSample) sample = gst_app_sink_try_pull_sample(GST_APP_SINK(out), 20 * GST_MSECOND);
+            std::this_thread::sleep_for(std::chrono::milliseconds(15));
         }
         gst_object_unref(out);
+    }
+
+    void wait()
+    {
+        note("wait");
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
     }
 
     GstEvent *new_seek()
@@ -258,7 +269,7 @@ private:
                 set_state(GST_STATE_READY);
             return set_state(GST_STATE_PLAYING);
         default:
-            return pull();
+            return wait();
         }
     }
 
