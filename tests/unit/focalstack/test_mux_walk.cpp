@@ -8,10 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <future>
-#include <gst/app/gstappsink.h>
 #include <gtest/gtest.h>
 #include <random>
-#include <stop_token>
 #include <thread>
 
 /* Random walks through what applications do to a mux: nothing may hang, crash or be called critical.
@@ -30,6 +28,12 @@ void count_criticals(const gchar *domain, GLogLevelFlags level, const gchar *tex
         return;
     std::printf("%s: %s\n", domain, text);
     criticals++;
+}
+
+/* A sink that is slower than the sources, so that the mux is held up. */
+void take_time(GstElement *, GstBuffer *, GstPad *, gpointer)
+{
+    std::this_thread::sleep_for(std::chrono::milliseconds(15));
 }
 
 /* What happens to the frames of one source. */
@@ -75,7 +79,7 @@ public:
         if (pick(3) == 0)
             description += " window=rolling";
         description +=
-            " ! appsink name=out max-buffers=3 sync=" + std::string(pick(2) ? "true" : "false") + " ";
+            " ! fakesink name=out signal-handoffs=true sync=" + std::string(pick(2) ? "true" : "false") + " ";
         for (unsigned i = 0; i < sources_; i++) {
             const std::string n = std::to_string(i);
             description += "videotestsrc name=s" + n + (pick(5) ? "" : " is-live=true") +
@@ -88,6 +92,9 @@ public:
             disturbances_[i].label = one_pad_;
             gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, disturb, &disturbances_[i], nullptr);
         }
+        GstElement *sink = gst_bin_get_by_name(GST_BIN(pipeline_), "out");
+        g_signal_connect(sink, "handoff", G_CALLBACK(take_time), nullptr);
+        gst_object_unref(sink);
         note(description);
     }
 
@@ -97,7 +104,6 @@ public:
 
     void run()
     {
-        const std::jthread puller([this](const std::stop_token &stop) { pull_until(stop); });
         set_state(GST_STATE_PLAYING);
         for (unsigned k = 0; k < steps; k++)
             step();
@@ -134,18 +140,6 @@ private:
     {
         note(gst_element_state_get_name(state));
         gst_element_set_state(pipeline_, state);
-    }
-
-    /* Slower than the sources, so that the mux is held up. Somebody must pull at any time: an appsink that is
-     * full holds the lock that its next change of state needs. */
-    void pull_until(const std::stop_token &stop) const
-    {
-        GstElement *out = gst_bin_get_by_name(GST_BIN(pipeline_), "out");
-        while (!stop.stop_requested()) {
-            g_autoptr(GstSample) sample = gst_app_sink_try_pull_sample(GST_APP_SINK(out), 20 * GST_MSECOND);
-            std::this_thread::sleep_for(std::chrono::milliseconds(15));
-        }
-        gst_object_unref(out);
     }
 
     void wait()
