@@ -7,7 +7,7 @@
 
 namespace dff {
 
-/* A name may be registered once; several plug-ins have this. */
+/* A name may be registered once, and several plug-ins have this: each calls it as it is loaded. */
 inline const char *stack_noise_meta_name()
 {
     static const char *const name = [] {

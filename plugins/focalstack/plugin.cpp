@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "config.h"
 
+#include "common/stack_noise.h"
 #include "focalstack/focalstackalign.h"
 #include "focalstack/focalstackdemux.h"
 #ifdef HAVE_OPENCL
@@ -11,6 +12,7 @@
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
+    dff::stack_noise_meta_name(); /* plug-ins are loaded one after the other: nobody else registers it now */
     gboolean registered = FALSE;
     registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
     registered |= GST_ELEMENT_REGISTER(focalstackdemux, plugin);

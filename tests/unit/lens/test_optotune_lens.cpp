@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optotune_lens.h"
 
+#include "error_of.h"
 #include "fake_optotune.h"
 
 #include <fcntl.h>
@@ -35,19 +36,6 @@ void move_through(dff::OptotuneLens &lens, unsigned planes)
         lens.move_to(plane);
         EXPECT_TRUE(lens.wait_settled({}));
     }
-}
-
-/* What an open lens says when it is used. */
-template <typename Use> std::string error_of(Use use)
-{
-    try {
-        use();
-    } catch (const dff::LensError &error) {
-        return error.what();
-    } catch (const std::invalid_argument &error) {
-        return error.what();
-    }
-    return "";
 }
 
 using Moves = std::vector<std::string>;

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "optotune_triangle.h"
 
+#include "error_of.h"
 #include "fake_optotune.h"
 
 #include <filesystem>
@@ -32,18 +33,6 @@ std::optional<dff::FocusPoints> straight()
 dff::LensSweep sweep(double near, double far, std::chrono::microseconds period = 10ms)
 {
     return {dff::SweepPlan::even(3, near, far), period};
-}
-
-template <typename Use> std::string error_of(Use use)
-{
-    try {
-        use();
-    } catch (const dff::LensError &error) {
-        return error.what();
-    } catch (const std::invalid_argument &error) {
-        return error.what();
-    }
-    return "";
 }
 
 void expect_triangle(FakeOptotune &driver)

@@ -2,23 +2,19 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lenssweep/block_sharpness.h"
 #include "lenssweep/settle_check.h"
+#include "sharp_blocks.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
-#include <random>
 
 namespace {
 
 constexpr unsigned planes = 6;
-constexpr size_t blocks = 100;
 
-/* A scene whose blocks are sharp at planes of their own, a lens that is `late` of a plane behind when frames
- * are labelled, and noise. */
+/* A scene, and a lens that is `late` of a plane behind when frames are labelled. */
 class Rig {
 public:
-    Rig(double late, double noise, double contrast = 100) : late_(late), contrast_(contrast), noise_(0, noise)
-    {
-    }
+    Rig(double late, double noise, double contrast = 100) : late_(late), scene_(planes, contrast, noise) {}
 
     /* Labels `frames` frames, and holds the lens as it is asked to. */
     std::optional<double> run(unsigned frames)
@@ -29,11 +25,11 @@ public:
             const double plane = frame % planes;
             const double seen = plane - late_ * (plane - before);
             before = plane;
-            if (!check.add_labelled(check.needs_next() ? picture(seen) : SettleCheck::Sharpness{}))
+            if (!check.add_labelled(check.needs_next() ? scene_.seen_at(seen) : SettleCheck::Sharpness{}))
                 continue;
             holds_++;
             for (unsigned k = 1; k <= SettleCheck::held_frames; k++)
-                check.add_held(k, picture(plane));
+                check.add_held(k, scene_.seen_at(plane));
         }
         return check.lag();
     }
@@ -41,20 +37,8 @@ public:
     unsigned holds_ = 0;
 
 private:
-    SettleCheck::Sharpness picture(double plane)
-    {
-        SettleCheck::Sharpness sharpness(blocks);
-        for (size_t block = 0; block < blocks; block++) {
-            const double off = plane - planes * static_cast<double>(block) / blocks;
-            sharpness[block] = contrast_ / (1 + off * off) + noise_(random_);
-        }
-        return sharpness;
-    }
-
     double late_;
-    double contrast_;
-    std::normal_distribution<double> noise_;
-    std::mt19937 random_{7};
+    SharpBlocks scene_;
 };
 
 } // namespace

@@ -1,23 +1,19 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lenssweep/swing_check.h"
+#include "sharp_blocks.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
-#include <random>
 
 namespace {
 
 constexpr unsigned planes = 6;
-constexpr size_t blocks = 100;
 
-/* A scene whose blocks are sharp at planes of their own, a lens that is `late` planes behind its labels, both
- * ways, and noise. */
+/* A scene, and a lens that is `late` planes behind its labels, both ways. */
 class Rig {
 public:
-    Rig(double late, double noise, double contrast = 100) : late_(late), contrast_(contrast), noise_(0, noise)
-    {
-    }
+    Rig(double late, double noise, double contrast = 100) : late_(late), scene_(planes, contrast, noise) {}
 
     /* Of each frame of `sweeps` sweeps, but those that `is_lost` says. */
     std::optional<double> run(
@@ -31,7 +27,7 @@ public:
             if (is_lost(frame) || !check.wants(label))
                 continue;
             measured_++;
-            check.add(label, picture(label.plane + (sweep % 2 == 0 ? -late_ : late_)));
+            check.add(label, scene_.seen_at(label.plane + (sweep % 2 == 0 ? -late_ : late_)));
         }
         return check.lag();
     }
@@ -39,20 +35,8 @@ public:
     unsigned measured_ = 0;
 
 private:
-    SwingCheck::Sharpness picture(double plane)
-    {
-        SwingCheck::Sharpness sharpness(blocks);
-        for (size_t block = 0; block < blocks; block++) {
-            const double off = plane - planes * static_cast<double>(block) / blocks;
-            sharpness[block] = contrast_ / (1 + off * off) + noise_(random_);
-        }
-        return sharpness;
-    }
-
     double late_;
-    double contrast_;
-    std::normal_distribution<double> noise_;
-    std::mt19937 random_{7};
+    SharpBlocks scene_;
 };
 
 } // namespace
