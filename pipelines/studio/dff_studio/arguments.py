@@ -29,6 +29,12 @@ EXAMPLES
 '''
 
 
+def rig():
+    """The simulated rig's pipeline, with the camera that it has not."""
+    calibration = str(pathlib.Path(__file__).with_name('rig.yml'))
+    return RIG.format(calibration=calibration.replace('\\', '\\\\').replace('"', '\\"'))
+
+
 def port(text):
     number = int(text)
     if not 0 <= number <= 65535:
@@ -55,6 +61,5 @@ def parse(arguments=None):
     options = parser.parse_args(arguments)
     if options.address and not (options.accounts and options.certificate):
         parser.error('--address lets other machines in: give --accounts and --certificate too')
-    calibration = pathlib.Path(__file__).with_name('rig.yml')
-    options.launch = options.launch or RIG.format(calibration=str(calibration).replace('\\', '\\\\').replace('"', '\\"'))
+    options.launch = options.launch or rig()
     return options

@@ -18,6 +18,17 @@ UNITS = {'dioptre': 'dpt', 'index': 'plane', 'millimetre': 'mm', 'micrometre': '
 BINS = 64  # of the histogram, over the range of the stream
 STEPS = 512  # of a profile, at most
 
+TYPES = ((Gst, 'Buffer BufferFlags Caps ClockTime Event FlowReturn Format Message PadProbeInfo PadProbeReturn Promise PromiseResult '
+               'Query Sample Segment Structure SystemClock'),
+         (GstVideo, 'VideoFormatInfo VideoInfo VideoMeta VideoFrameFlags'), (GstDff, 'DepthMeta DepthUnit FocalStackMeta FocusInfo'))
+
+
+def load_types(types=TYPES):
+    """Here and now what streaming threads will need: two that load one at the same time get two."""
+    for module, names in types:
+        for name in names.split():
+            getattr(module, name, None)
+
 
 def pixels_of(buffer, caps, kind, meta_id=0):
     """Rows of the first component of a frame, without their padding. A copy."""
@@ -62,10 +73,12 @@ class Depth:
         """In the unit; NaN where not known."""
         return np.where(pixels == 0, np.nan, self.offset + self.scale * pixels.astype(float))
 
-    def metres(self, value):
+    def metres(self, values):
+        """Of a value or an array of them, in the unit; inf is as far as can be, NaN not known."""
         if self.unit == 'dioptre':
-            return 1 / value if value > 0 else math.inf
-        return {'millimetre': value / 1e3, 'micrometre': value / 1e6}.get(self.unit, math.nan)
+            with np.errstate(divide='ignore'):
+                return 1 / np.maximum(values, 0.0)
+        return values * {'millimetre': 1e-3, 'micrometre': 1e-6}.get(self.unit, math.nan)
 
     def facts(self):
         width, height = size_of(self.sample)
@@ -163,7 +176,7 @@ def value_at(depth, x, y, overlays):
     column, row = place(pixels.shape, x, y)
     value = float(depth.values(pixels[row, column]))
     found = {'x': column, 'y': row, 'pixel': int(pixels[row, column]), 'value': value, 'unit': depth.unit,
-             'symbol': UNITS.get(depth.unit, ''), 'metres': depth.metres(value)}
+             'symbol': UNITS.get(depth.unit, ''), 'metres': float(depth.metres(value))}
     for name, sample in overlays.items():
         overlay = pixels_of(sample.get_buffer(), sample.get_caps(), 'u1')
         at_x, at_y = place(overlay.shape, x, y)

@@ -25,24 +25,15 @@ def needed():
     return ''
 
 
-def load_types():
-    """Here and now what streaming threads will need: two that load one at the same time get two."""
-    from gi.repository import Gst, GstDff, GstSdp, GstVideo, GstWebRTC
-    for module, names in ((Gst, 'Buffer BufferFlags Caps ClockTime Event FlowReturn Format Message PadProbeInfo PadProbeReturn Promise PromiseResult '
-                                'Query Sample Segment Structure SystemClock'),
-                          (GstVideo, 'VideoFormatInfo VideoInfo VideoMeta VideoFrameFlags'), (GstDff, 'DepthMeta DepthUnit FocalStackMeta FocusInfo'),
-                          (GstSdp, 'SDPMessage SDPResult'), (GstWebRTC, 'WebRTCICEConnectionState WebRTCSDPType WebRTCSessionDescription')):
-        for name in names.split():
-            getattr(module, name, None)
-
-
 def serve(options):
-    from gi.repository import GLib, Gst
+    from gi.repository import GLib, Gst, GstSdp, GstWebRTC
     Gst.init(None)
+    from dff_studio import frames
     from dff_studio.access import Access, read_accounts
     from dff_studio.studio import Studio
     from dff_studio.web import Web
-    load_types()
+    frames.load_types()
+    frames.load_types(((GstSdp, 'SDPMessage SDPResult'), (GstWebRTC, 'WebRTCICEConnectionState WebRTCSDPType WebRTCSessionDescription')))
     access = Access(options.address, read_accounts(options.accounts) if options.accounts else {})
     addresses = ['127.0.0.1'] if not options.address else []
     studio = Studio(options.launch, addresses, options.bitrate * 1000)

@@ -62,13 +62,25 @@ def of_factory(bin_, name):
     return None
 
 
+def running_time(sample):
+    """Nanoseconds since the pipeline's base time; None where the sample has none."""
+    segment, pts = sample.get_segment(), sample.get_buffer().pts
+    if segment.format != Gst.Format.TIME or pts == Gst.CLOCK_TIME_NONE:
+        return None
+    running = segment.to_running_time(Gst.Format.TIME, pts)
+    return None if running == Gst.CLOCK_TIME_NONE else running
+
+
 class Source:
     """Runs while it is wanted; started again, for ever, when it fails or ends. `on_sample(output, sample, age)` is called by its
     streaming threads, `age` in seconds since the first exposure; `on_state(text)` by the main loop, empty when it runs. What
-    takes its time, starting and stopping a camera, is done by a thread of its own."""
+    takes its time, starting and stopping a camera, is done by a thread of its own. With `on_end`, that is called at the end of
+    the stream in place of another start. `overlays`: what dffdepth is asked for beside depth; `convert`: elements between an
+    output and its samples, by the output's name."""
 
-    def __init__(self, launch, on_sample, on_state):
-        self.on_sample, self.on_state = on_sample, on_state
+    def __init__(self, launch, on_sample, on_state, overlays=OUTPUTS[3:], convert=None, on_end=None):
+        self.on_sample, self.on_state, self.on_end = on_sample, on_state, on_end
+        self.convert = convert or {}
         self.pipeline = parse(launch)
         self.sinks = {}
         for name in OUTPUTS[:3]:
@@ -78,7 +90,7 @@ class Source:
             raise Unusable('The source pipeline has no output: name the element whose source pad gives the depth depth, that of '
                            'the all-in-focus picture aif; if the pad is linked, a tee behind it')
         self.depth_element = of_factory(self.pipeline, 'dffdepth')
-        for name in OUTPUTS[3:]:
+        for name in overlays:
             self.tap_overlay(name)
         self.pipeline.use_clock(Gst.SystemClock.obtain())
         bus = self.pipeline.get_bus()
@@ -108,7 +120,13 @@ class Source:
         sink.connect('new-sample', self.take_sample, name)
         parent.add(queue)
         parent.add(sink)
-        queue.link(sink)
+        if name in self.convert:
+            converter = Gst.parse_bin_from_description(self.convert[name], True)
+            parent.add(converter)
+            queue.link(converter)
+            converter.link(sink)
+        else:
+            queue.link(sink)
         if pad.link(queue.get_static_pad('sink')) != Gst.PadLinkReturn.OK:
             raise Unusable(f'The output {name} of the source pipeline cannot be linked')
         self.sinks[name] = sink
@@ -118,14 +136,9 @@ class Source:
         if sample is None:
             return Gst.FlowReturn.EOS
         self.delivered = True
-        age = None
-        segment, pts = sample.get_segment(), sample.get_buffer().pts
-        if segment.format == Gst.Format.TIME and pts != Gst.CLOCK_TIME_NONE:
-            running = segment.to_running_time(Gst.Format.TIME, pts)
-            now = self.pipeline.get_pipeline_clock().get_time() - self.pipeline.get_base_time()
-            if running != Gst.CLOCK_TIME_NONE:
-                age = (now - running) / Gst.SECOND
-        self.on_sample(name, sample, age)
+        running = running_time(sample)
+        now = self.pipeline.get_pipeline_clock().get_time() - self.pipeline.get_base_time()
+        self.on_sample(name, sample, None if running is None else (now - running) / Gst.SECOND)
         return Gst.FlowReturn.OK
 
     def want(self, wanted):
@@ -163,6 +176,8 @@ class Source:
             error, details = message.parse_error()
             log.debug('%s', details)
             self.fail(error.message)
+        elif message.type == Gst.MessageType.EOS and self.on_end:
+            self.on_end()
         elif message.type == Gst.MessageType.EOS:
             self.fail('It came to its end')
         elif message.type == Gst.MessageType.WARNING:
