@@ -217,6 +217,16 @@ class Results(Program):
         self.stack(self.photos, '--depth', self.out / 'z.tif', '--far-first')
         self.assert_slope(PLANES - 1 - read(self.out / 'z.tif')[1][:, :, 0])
 
+    def test_a_wrong_order_is_told_and_stands_in_the_report(self):
+        self.write_sweep()
+        (self.photos / 'p3.png').rename(self.photos / 'p9.png')
+        words = 'Out of order, it seems: p9.png.'
+        finished = self.stack(self.photos, '--report', self.out / 'r.html')
+        self.assertIn(words, finished.stderr)
+        self.assertIn(words, (self.out / 'r.html').read_text())
+        (self.photos / 'p9.png').rename(self.photos / 'p3.png')
+        self.assertNotIn('order', self.stack(self.photos, '-o', self.out / 'a.png').stderr)
+
     def test_a_preview_is_a_quarter(self):
         for number in range(PLANES):
             write(self.photos / f'{number}.png', np.round(np.kron(plane(number), np.ones((4, 4, 1)))).astype(np.uint8))

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, in which order, and what it refuses."""
+"""test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, and what it refuses."""
 import os
-import pathlib
 import shutil
 import struct
 import sys
@@ -13,11 +12,11 @@ import unittest
 import numpy as np
 import OpenImageIO as oiio
 
-from sweeps import CMYK, SIDE, Folders, flat, texture, write
+from gathering import Sweeps
+from sweeps import CMYK, SIDE, flat, texture, write
 
-sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, ahead, depths, encoding, order, sweep  # noqa: E402
-from dff_stack.progress import Progress  # noqa: E402
+from dff_stack import Unusable, ahead, depths, encoding, sweep
+from dff_stack.progress import Progress
 
 
 def write_pages(path, pages, description=''):
@@ -32,29 +31,6 @@ def write_pages(path, pages, description=''):
         assert number == 0 or output.open(str(path), specs[number], 'AppendSubimage'), output.geterror()
         assert output.write_image(page), output.geterror()
     assert output.close(), output.geterror()
-
-
-class Sweeps(Folders):
-    def setUp(self):
-        super().setUp()
-        self.said = []
-
-    def gather(self, *paths, order_='name', far_first=False):
-        return sweep.gather(paths or [self.photos], order_, far_first, self.said.append)[0]
-
-    def names(self, **options):
-        return [picture.name for picture in self.gather(**options)]
-
-    def frames(self, has_deep_colour=False):
-        found = sweep.Sweep(self.gather(), has_deep_colour, False)
-        found.look_through(0, Progress(quiet=True))
-        return found, [found.read(number) for number in range(found.count)]
-
-    def assert_refused(self, *phrases, act=None):
-        with self.assertRaises(Unusable) as caught:
-            (act or self.frames)()
-        for phrase in phrases:
-            self.assertIn(phrase, str(caught.exception))
 
 
 class Reading(Sweeps):
@@ -226,73 +202,6 @@ class Ome(Sweeps):
     def test_a_description_that_is_none_is_refused(self):
         write_pages(self.photos / 'a.tif', [flat(0), flat(50)], '<OME><broken')
         self.assert_refused('a.tif', 'OME')
-
-
-class Order(Sweeps):
-    def setUp(self):
-        super().setUp()
-        for number in range(5):
-            write(self.photos / f'{number}.tif', texture(number))
-
-    def tell(self, of):
-        found = self.gather()
-        for number, picture in enumerate(found):
-            of(number, picture)
-        return found
-
-    def test_distances_that_fall_turn_the_order(self):
-        found = [picture for picture in self.gather()]
-        for number, picture in enumerate(found):
-            picture.distance_m = 1.0 - 0.1 * number
-        turned = order.nearest_first(found, 'name', False, self.said.append)
-        self.assertEqual(turned, found[::-1])
-        self.assertIn('reverse', self.said[0])
-        self.assertEqual(order.nearest_first(turned, 'exif-distance', False, self.said.append), found[::-1])
-
-    def test_distances_that_do_not_agree_turn_nothing(self):
-        self.assertEqual(order.direction([1, 2, 1, 2, 1]), 0)
-        self.assertEqual(order.direction([None, None, None, 2, 1]), 0)
-        self.assertEqual(order.direction([3, 2.5, None, 2, 1]), -1)
-
-    def test_by_time(self):
-        found = self.tell(lambda number, picture: setattr(picture, 'time', f'2026:01:01 10:00:{50 - number}.'))
-        self.assertEqual(order.ordered(found, 'time'), found[::-1])
-        found[2].time = ''
-        self.assert_refused('2.tif', '--order time', act=lambda: order.ordered(found, 'time'))
-
-    def test_exif_is_read(self):
-        spec = oiio.ImageSpec(SIDE, SIDE, 3, oiio.UINT8)
-        spec['Exif:SubjectDistance'], spec['Exif:DateTimeOriginal'] = 0.25, '2026:01:01 10:00:00'
-        path = self.photos / '0.tif'
-        output = oiio.ImageOutput.create(str(path))
-        assert output.open(str(path), spec) and output.write_image(flat(9)) and output.close()
-        picture = self.gather()[0]
-        self.assertAlmostEqual(picture.distance_m, 0.25)
-        self.assertTrue(picture.time.startswith('2026:01:01 10:00:00'))
-
-    def test_what_is_out_of_order_is_named(self):
-        found = self.tell(lambda number, picture: setattr(picture, 'time', f'2026:01:01 10:00:0{(0, 1, 4, 3, 5)[number]}.'))
-        order.tell_of_doubts(found, [], self.said.append)
-        self.assertIn('3.tif', self.said[0])
-
-    def test_a_picture_that_interrupts_a_sweep_is_noticed(self):
-        def view(place):
-            x = np.linspace(0, 9, 32)
-            return np.tile(120 + 80 * np.sin(x + 0.3 * place), (32, 1))
-        places = [0, 1, 2, 7, 3, 4, 5, 6, 8, 9]
-        self.assertEqual(order.out_of_place([view(place) for place in places]), [3])
-        self.assertEqual(order.out_of_place([view(place) for place in sorted(places)]), [])
-        flicker = np.random.default_rng(2).uniform(0.95, 1.05, 20)
-        self.assertEqual(order.out_of_place([gain * view(0.01 * place) for place, gain in enumerate(flicker)]), [])
-
-    def test_the_same_picture_is_taken_once(self):
-        shutil.copy(self.photos / '1.tif', self.photos / '3b.tif')
-        found = sweep.Sweep(self.gather(), False, False)
-        look = found.look_through(0, Progress(quiet=True))
-        sweep.without_duplicates(found, look, self.said.append)
-        self.assertEqual([picture.name for picture in found.pictures], ['0.tif', '1.tif', '2.tif', '3.tif', '4.tif'])
-        self.assertEqual(len(look.lumas), 5)
-        self.assertRegex(self.said[0], '3b.tif is the same picture as 1.tif')
 
 
 class Refusing(Sweeps):

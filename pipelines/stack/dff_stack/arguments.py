@@ -20,8 +20,8 @@ ORDER
   A folder is read in the order of its names, in which people count; files and folders one after the other as they are named.
   --order time takes EXIF's times, --order exif-distance EXIF's focus distances. Where these fall from picture to picture in the
   order of the names, the farthest is taken to be the first, and that is told. A picture that is there twice is taken once.
-  Pictures that seem out of order are named. A picture that fits the others by no shift, turn, zoom or perspective is left out,
-  and named.
+  Pictures that seem out of order, by EXIF or by what is sharp in them, are named, and so are two sweeps in one folder and
+  neighbours that are almost the same. A picture that fits the others by no shift, turn, zoom or perspective is left out, and named.
 
 RESULTS
   The ending of a name says what is written: .tif, .png, .jpg or .exr. All results are written when everything is computed; if

@@ -71,11 +71,11 @@ def process(options, progress, tell):
     elif len(found.bad_pixels):
         say(f'   {len(found.bad_pixels)} pixels of the sensor are always bright or dark: their neighbours take their place')
     sweep.without_duplicates(found, look, say)
-    order.tell_of_doubts(found.pictures, look.thumbnails, say)
     if options.step:
         depths.take_step(found.pictures, options.step)
     with results.together() as files:
         warps = warps_of(options, found, look, say, progress)
+        order.tell_of_doubts(found.pictures, look.lumas, look.sharpness, say)
         look.keep_small()
         work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'), options.prefer)
         solved = solve.solve(found, warps, work)

@@ -5,9 +5,12 @@ import hashlib
 
 import numpy as np
 
-from dff_stack import Unusable, listed
+from dff_stack import Unusable, listed, seriation
 
 ORDERS = ('name', 'time', 'exif-distance')
+FEW_SPANS = 6           # of another order, that are not taken for two sweeps
+ALMOST_THE_SAME = 0.25  # of what neighbours differ, and
+HARDLY = 0.7            # of 255 in the mean, which is less than the noise of two exposures
 
 
 def ordered(pictures, order):
@@ -69,30 +72,51 @@ def duplicates(fingerprints):
     return [(number, first[print_]) for number, print_ in enumerate(fingerprints) if first.setdefault(print_, number) != number]
 
 
-def unlikeness(thumbnails):
-    """How much every two pictures differ, their brightness and contrast aside."""
-    flat = np.stack([(thumbnail.ravel() - thumbnail.mean()) / max(thumbnail.std(), 1) for thumbnail in map(np.float32, thumbnails)])
-    return np.abs(flat[:, None] - flat[None]).mean(2)
+def copies(lumas):
+    """Pairs of neighbours that are almost the same picture, which differ much less than either does from its other neighbour."""
+    differences = [float(np.abs(a.astype(np.float32) - b).mean()) for a, b in zip(lumas, lumas[1:])]
+    beside = [min(others) for others in zip([np.inf, *differences], [*differences[1:], np.inf])]
+    return [number for number, here in enumerate(differences) if here < min(HARDLY, ALMOST_THE_SAME * beside[number]) and beside[number] < np.inf]
 
 
-def out_of_place(thumbnails):
-    """Numbers of pictures that interrupt a sweep: their neighbours are much more like each other than like them, and other
-    neighbours are more like them."""
-    if len(thumbnails) < 5:
-        return []
-    unlike = unlikeness(thumbnails)
-    usual = np.median(np.diag(unlike, 1))
-    found = []
-    for z in range(1, len(thumbnails) - 1):
-        here = min(unlike[z - 1, z], unlike[z, z + 1])
-        elsewhere = min((max(unlike[z, k], unlike[z, k + 1]) for k in range(len(thumbnails) - 1) if z not in (k, k + 1)),
-                        default=here)
-        if here > max(2 * unlike[z - 1, z + 1], 2 * elsewhere, 3 * usual):
-            found.append(z)
-    return found
+def spans_of(order):
+    """First and last of each part in which pictures follow each other, forwards or backwards, as in their present order."""
+    spans = []
+    for number in map(int, order):
+        if spans and abs(number - spans[-1][1]) == 1 and (spans[-1][0] - spans[-1][1]) * (spans[-1][1] - number) >= 0:
+            spans[-1][1] = number
+        else:
+            spans.append([number, number])
+    return spans
 
 
-def tell_of_doubts(pictures, thumbnails, say):
-    wrong = contradictions(pictures) or [pictures[z].name for z in out_of_place(thumbnails)]
-    if wrong:
-        say(f'   Out of order, it seems: {listed(wrong)}. See --order and --far-first')
+def spoken_spans(spans, names, most=16):
+    words = [names[first] if first == last else f'{names[first]} to {names[last]}' for first, last in spans]
+    return ', '.join(words[:most]) + (' and so on' if len(words) > most else '')
+
+
+def doubts_of_sharpness(names, sharpness):
+    """What is wrong with an order in which what is sharp does not go through the scene once, in words; or nothing."""
+    other = seriation.other_order(sharpness)
+    if other is None:
+        return None
+    spans, second = spans_of(other), seriation.two_sweeps(sharpness, other)
+    so = spoken_spans(spans, names)
+    if len(spans) > FEW_SPANS and second:
+        return (f'The focus goes through the scene twice, it seems: from {names[0]} to {names[second - 1]} and from {names[second]} to '
+                f'{names[-1]}. Name the pictures of one of the two, or all in the order in which the focus moves: {so}')
+    astray = sorted(set(range(len(names))) - set(seriation.agreeing(other)))
+    return (f'Out of order, it seems: {listed([names[number] for number in astray])}. What is sharp in them moves through the scene in this '
+            f'order: {so}. See --order, or name the pictures so')
+
+
+def tell_of_doubts(pictures, lumas, sharpness, say):
+    names = [picture.name for picture in pictures]
+    wrong = contradictions(pictures)
+    seen = doubts_of_sharpness(names, sharpness)
+    if seen:
+        say(f'   {seen}')
+    elif wrong:
+        say(f'   Out of order, it seems, by what EXIF says: {listed(wrong)}. See --order and --far-first')
+    for number in copies(lumas):
+        say(f'   {names[number + 1]} is almost the same picture as {names[number]}: a copy, or the focus stood still')

@@ -6,11 +6,10 @@ import pathlib
 
 import numpy as np
 
-from dff_stack import Unusable, ahead, depths, encoding, listed, order, pictures
+from dff_stack import Unusable, ahead, depths, encoding, listed, order, pictures, seriation
 from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
-THUMBNAIL = 32    # in which they are compared
 CONTACT = 160     # that a report shows
 PREVIEW = 4       # times smaller
 
@@ -41,7 +40,7 @@ class Look:
     """What a first look at all pictures told."""
     lumas: list       # small ones of 8 bits
     factor: int       # how many times smaller than the picture they are
-    thumbnails: list
+    sharpness: list   # of each picture's parts
     white: float      # the brightest of all, of numbers with a point
 
     def keep_small(self):
@@ -49,7 +48,7 @@ class Look:
         self.lumas = [np.round(encoding.shrunk_luma(luma[:, :, None], CONTACT)).astype(np.uint8) for luma in self.lumas]
 
     def leave_out(self, numbers):
-        for values in (self.lumas, self.thumbnails):
+        for values in (self.lumas, self.sharpness):
             values[:] = [value for number, value in enumerate(values) if number not in numbers]
 
 
@@ -111,7 +110,7 @@ class Sweep:
             self.encoding = dataclasses.replace(self.encoding, white=look.white)
             look.lumas = [np.round(luma * (255 / np.sqrt(look.white))).clip(0, 255).astype(np.uint8) for luma in look.lumas]
         self.bad_pixels = bad.found()
-        look.thumbnails = [encoding.shrunk_luma(luma[:, :, None], THUMBNAIL) for luma in look.lumas]
+        look.sharpness = list(ahead.in_order(seriation.sharpness_of, look.lumas))
         return look
 
     def leave_out(self, numbers):
