@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """test_stack_reading.py SOURCE_ROOT: what dff-stack reads of the pictures that people have, and what it refuses."""
+import itertools
 import os
 import shutil
 import struct
@@ -31,6 +32,14 @@ def write_pages(path, pages, description=''):
         assert number == 0 or output.open(str(path), specs[number], 'AppendSubimage'), output.geterror()
         assert output.write_image(page), output.geterror()
     assert output.close(), output.geterror()
+
+
+def turned(pixels, orientation):
+    """By where EXIF 2.32, 4.6.4, has the first row and the first column: rows are at the top, the bottom, the left or the right."""
+    rows_are_columns, from_the_right, from_the_bottom = {1: (0, 0, 0), 2: (0, 1, 0), 3: (0, 1, 1), 4: (0, 0, 1), 5: (1, 0, 0), 6: (1, 1, 0),
+                                                         7: (1, 1, 1), 8: (1, 0, 1)}[orientation]
+    pixels = pixels.transpose(1, 0, 2) if rows_are_columns else pixels
+    return pixels[::-1 if from_the_bottom else 1, ::-1 if from_the_right else 1]
 
 
 class Reading(Sweeps):
@@ -79,6 +88,30 @@ class Reading(Sweeps):
         light[5, 5] = (np.nan, np.inf, -1)
         write(self.photos / '0.exr', light)
         self.assertTrue(np.isfinite(self.frames(has_deep_colour=True)[1][0]).all())
+
+    def test_every_kind_keeps_its_colours(self):
+        """8 and 16 bits, grey and colours, with and without transparency, stored in the eight ways that EXIF knows."""
+        random = np.random.default_rng(5)
+        for ending, kinds, channel_counts, orientations in (('png', ('u1', 'u2'), (1, 2, 3, 4), (1,)), ('jpg', ('u1',), (1, 3), range(1, 9)),
+                                                            ('tif', ('u1', 'u2'), (1, 2, 3, 4), range(1, 9))):
+            for kind, channels, orientation in itertools.product(kinds, channel_counts, orientations):
+                tones = np.kron(random.uniform(0.2, 0.9, (5, 4, channels)), np.ones((16, 16, 1)))
+                pixels = np.round(tones * np.iinfo(kind).max).astype(kind)
+                for number in range(2):
+                    write(self.photos / f'{number}.{ending}', pixels, orientation)
+                with self.subTest(f'{ending}, {kind}, {channels} channels, orientation {orientation}'):
+                    self.assert_colours(turned(pixels, orientation)[:, :, :1 if channels < 3 else 3], kind)
+            for number in range(2):
+                (self.photos / f'{number}.{ending}').unlink()
+
+    def assert_colours(self, expected, kind):
+        """To one percent, in the middle of fields of 16x16 pixels."""
+        found, frames = self.frames(has_deep_colour=True)
+        formats = {('u1', 1): 'GRAY8', ('u2', 1): 'GRAY16_LE', ('u1', 3): 'RGB', ('u2', 3): 'RGBA64_LE'}
+        self.assertEqual(found.encoding.format, formats[kind, expected.shape[2]])
+        shown = found.encoding.decode(frames[0])
+        self.assertEqual(shown.shape, expected.shape)
+        self.assertLess(np.abs(shown.astype(float) - expected)[8::16, 8::16].max(), 0.01 * np.iinfo(kind).max)
 
     def test_pictures_are_turned_upright(self):
         upright = np.zeros((80, 100, 3), np.uint8)
