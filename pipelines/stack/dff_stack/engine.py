@@ -15,6 +15,7 @@ from dff_stack.encoding import Encoding  # noqa: E402
 
 LUMA, DEPTH = Encoding('GRAY8', 1, 'u1', False), Encoding('GRAY16_LE', 1, '<u2', False)
 abandoned = []  # runs that were interrupted, which must not be freed
+COPIED_BYTES = 128 * 1024  # at once: the copies on the way then stay in the processor's cache
 TICK_NS = 100 * 1000 * 1000  # between two looks at the keyboard
 ELEMENTS = ('appsrc', 'appsink', 'focalstackalign', 'dffdepth', 'aifcompose')
 
@@ -58,11 +59,14 @@ def stack_buffer(planes, count, encoding, width, height):
     buffer = Gst.Buffer.new_allocate(None, count * stride * height, None)
     if buffer is None:
         raise Unusable(f'There is no memory for {count} pictures of {width}x{height} at once: lower --memory')
+    at_once = max(1, COPIED_BYTES // stride)
     for number, plane in enumerate(planes):
         rows = np.ascontiguousarray(plane).reshape(height, -1).view(np.uint8)
-        if rows.shape[1] != stride:
-            rows = np.pad(rows, ((0, 0), (0, stride - rows.shape[1])))
-        buffer.fill(number * stride * height, rows.tobytes())
+        for first in range(0, height, at_once):
+            part = rows[first:first + at_once]
+            if part.shape[1] != stride:
+                part = np.pad(part, ((0, 0), (0, stride - part.shape[1])))
+            buffer.fill((number * height + first) * stride, part.tobytes())
     return buffer
 
 
