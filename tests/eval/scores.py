@@ -106,6 +106,11 @@ def tenengrad(gray):
     return squares.reshape(height // TILE, TILE, width // TILE, TILE).mean((1, 3))
 
 
+def textured_tiles(least, most):
+    """Where there is something to be sharp, from the least and the most that any plane has in each tile."""
+    return most > max(4 * np.percentile(least, 20), 0.5, np.percentile(most, 95) * 0.004)
+
+
 def real_scores(image, planes):
     """Of a picture whose truth nobody knows, beside the planes it was made from. Invented: per mille of pixels whose gradient exceeds 1.3
     times the strongest gradient of any plane within 5x5 by 1.5 levels, lines that no plane has; a rim of 6 % is left out. Tile: the
@@ -118,5 +123,5 @@ def real_scores(image, planes):
     rim = int(0.06 * image.shape[1])
     strongest = cv2.dilate(strongest, np.ones((5, 5), np.uint8))
     lines = (gradient(luma(image)) > 1.3 * strongest + 1.5)[rim:-rim, rim:-rim]
-    textured = most > max(4 * np.percentile(least, 20), 0.5, np.percentile(most, 95) * 0.004)
+    textured = textured_tiles(least, most)
     return {'invented': float(lines.mean() * 1000), 'tile': float(np.median(tenengrad(luma(image))[textured] / most[textured]))}

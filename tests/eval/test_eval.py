@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 
 import evaluate
+import flicker
 import halo
 import peers
 import scenes
@@ -123,6 +124,30 @@ class PicturesOfPlanes(unittest.TestCase):
         blurred = scores.halo_scores(planes[4], sharp, planes)
         self.assertGreater(blurred['below_best'], 1)
         self.assertGreater(blurred['halo'], 0.3)
+
+
+class Flicker(unittest.TestCase):
+    def setUp(self):
+        self.picture = np.tile(np.linspace(20, 220, 256, dtype=np.float32)[:, None, None], (1, 256, 3))
+
+    def test_planes_flicker_by_what_is_told(self):
+        kinds = flicker.flickers(1, 7)
+        gains = [kinds['gain 12 %'](z, self.picture).mean() / self.picture.mean() for z in range(7)]
+        self.assertAlmostEqual(np.mean(gains), 1, places=4)
+        self.assertAlmostEqual(np.std(gains), 0.12, places=4)
+
+    def test_mottle_is_what_no_gain_explains(self):
+        self.assertAlmostEqual(flicker.mottle(1.2 * self.picture + 5, self.picture), 0, places=2)
+        mottled = self.picture.copy()
+        mottled[:, :128] += 20
+        self.assertGreater(flicker.mottle(mottled, self.picture), 2)
+
+    def test_moved_is_of_textured_pixels(self):
+        truth, textured = np.zeros((64, 64)), np.zeros((64, 64), bool)
+        textured[:, :32] = True
+        depth = truth.copy()
+        depth[:16, :16], depth[:, 32:] = 1.5, 3
+        self.assertAlmostEqual(flicker.moved(depth, truth, textured), 12.5)
 
 
 class Peers(unittest.TestCase):
