@@ -64,7 +64,7 @@ __kernel void splat(__global const uchar *sparse, __global const uchar *referenc
             mass[cell] += 1.0f;
             if (sparse[pixel] != UNKNOWN_PLANE) {
                 weight[cell] += 1.0f;
-                target[cell] += sparse[pixel];
+                target[cell] += 0.5f * sparse[pixel];
             }
         }
 }

@@ -17,13 +17,14 @@ __kernel void code_positions(__global const float *u, __global const ushort *cod
     depth[pixel] = isnan(position) ? codes[0] : codes[1 + convert_int_rte(65534.0f * share)];
 }
 
-__kernel void code_planes(__global const uchar *sparse, __global const ushort *codes, __global ushort *depth, int width,
+/* The same of places in half planes. */
+__kernel void code_places(__global const uchar *sparse, __global const ushort *codes, __global ushort *depth, int width,
                           int planes)
 {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
     if (x >= width)
         return;
     const ulong pixel = (ulong)y * width + x;
-    const int plane = sparse[pixel];
-    depth[pixel] = plane == UNKNOWN_PLANE ? codes[0] : codes[1 + (65534 * plane + (planes - 1) / 2) / (planes - 1)];
+    const int place = sparse[pixel];
+    depth[pixel] = place == UNKNOWN_PLANE ? codes[0] : codes[1 + (32767 * place + (planes - 1) / 2) / (planes - 1)];
 }

@@ -91,9 +91,10 @@ inline float upsample(__global const float *gradient, const Footprint *f, int z)
     return mix(upper, lower, f->fy);
 }
 
-/* Per pixel: max over z of P, the plane where it is, and the mean over z. */
+/* Per pixel: max over z of P, where it is, and the mean over z. Places are half planes, so that where two planes next to
+ * each other are equally sharp their middle can be said. */
 __kernel void focus_product(__global const uchar *stack, __global const ulong2 *rows, __global const float *gradient,
-                            __global float *peak, __global uchar *peak_plane, __global float *mean, int width,
+                            __global float *peak, __global uchar *place, __global float *mean, int width,
                             int height, int planes)
 {
     const int x = (int)get_global_id(0), y = (int)get_global_id(1);
@@ -108,7 +109,7 @@ __kernel void focus_product(__global const uchar *stack, __global const ulong2 *
     }
 #endif
     float best = -1.0f, sum = 0.0f;
-    int best_plane = 0;
+    int best_place = 0;
     for (int z = 0; z < planes; z++) {
         float product = fine_gradient(stack, rows[z], x, y, width, height);
 #if LEVELS > 1
@@ -118,11 +119,12 @@ __kernel void focus_product(__global const uchar *stack, __global const ulong2 *
         sum += product;
         if (product > best) {
             best = product;
-            best_plane = z;
-        }
+            best_place = 2 * z;
+        } else if (product == best)
+            best_place++;
     }
     const ulong pixel = (ulong)y * width + x;
     peak[pixel] = best;
-    peak_plane[pixel] = (uchar)best_plane;
+    place[pixel] = (uchar)best_place;
     mean[pixel] = sum / planes;
 }

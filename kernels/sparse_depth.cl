@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * Sparse depth (2), (5) of Oliva-García 2022: the plane of the highest focus measure P, kept where
+ * Sparse depth (2), (5) of Oliva-García 2022: the place of the highest focus measure P in half planes, kept where
  *
  *     max_z P > 0,  max_z P >= tolerance * mean_z P,  max_z P >= mean_{x,y,z} P,
  *     max_z P >= 0.5 * its maximum in the 7x7 neighbourhood    (edge ridges only; the blurred skirts of strong edges
@@ -46,7 +46,7 @@ __kernel void row_maximum(__global const float *peak, __global float *maximum, i
     maximum[(ulong)y * width + x] = highest;
 }
 
-__kernel void select_ridges(__global const float *peak, __global const uchar *peak_plane, __global const float *mean,
+__kernel void select_ridges(__global const float *peak, __global const uchar *place, __global const float *mean,
                             __global const float *row_maximum, __global const float *total_mean,
                             __global const uchar *moved, __global uchar *sparse, int width, int height, float tolerance,
                             int use_moved)
@@ -62,7 +62,7 @@ __kernel void select_ridges(__global const float *peak, __global const uchar *pe
     const float p = peak[pixel];
     const int sharp = p > 0.0f && p >= tolerance * mean[pixel] && p >= *total_mean && p >= RIDGE_SHARE * highest;
     const int still = !use_moved || moved[pixel] == 0;
-    sparse[pixel] = sharp && still ? peak_plane[pixel] : UNKNOWN_PLANE;
+    sparse[pixel] = sharp && still ? place[pixel] : UNKNOWN_PLANE;
 }
 
 /* Confidence 0..255: how far the winning plane stands above the mean over the planes, 1 - mean_z P / max_z P, relative

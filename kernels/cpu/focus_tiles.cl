@@ -14,7 +14,7 @@
  * What differs from the formula:
  *  - the gradient's magnitude is max(m, 7/8 m + n/2) with m >= n the absolute derivatives: 3 % low to 0.8 % high;
  *  - gradients are integers in 1/8 DN (fine), 1/32 (1/2), 1/72 (1/3) and 1/128 DN (1/4);
- *  - the maximum has 8 bits of mantissa.
+ *  - the maximum has 8 bits of mantissa, and what differs by less than 2^-16 of it is equally sharp.
  */
 #include "lanes32.cl"
 #include "tile.cl"
@@ -45,8 +45,9 @@ inline float16 product_of_levels(float16 gradient, const Between *coarse, int i,
     return product;
 }
 
-/* The lowest bits of the best product so far hold LAST_PLANE - z. */
-#define LAST_PLANE 63
+/* The lowest bits of the best product so far hold LAST_PLACE less the place in half planes: of planes that are equally
+ * sharp and next to each other, the middle. */
+#define LAST_PLACE 127
 
 /* What is kept between planes of 64 pixels in a row, [column % 4][column / 4]. */
 typedef struct {
@@ -57,8 +58,10 @@ typedef struct {
 /* Takes the products of 16 pixels in plane z to what was kept before. */
 inline void take(float16 product, int z, const Kept *before, Kept *kept, int i)
 {
-    const int16 candidate = (as_int16(product) & ~LAST_PLANE) | (LAST_PLANE - z);
-    kept->best[i] = max(before->best[i], candidate);
+    const int16 candidate = (as_int16(product) & ~LAST_PLACE) | (LAST_PLACE - 2 * z);
+    /* -1, half a plane farther, unless it is better than this one; if it is worse, it does not stay anyway. */
+    const int16 not_better = before->best[i] <= (as_int16(product) | LAST_PLACE);
+    kept->best[i] = max(before->best[i] + not_better, candidate);
     kept->sum[i] = before->sum[i] + product;
 }
 
@@ -132,7 +135,7 @@ inline void store_pairs(uint16 first, uint16 second, __global ushort *out)
 /* Writes 64 pixels, of which `columns` lie in the picture, and returns the sum of their means. `unit` is what one of
  * the integer product is worth; without confidence its pointer is 0. */
 inline float16 store_pixels(const Kept *kept, int columns, float unit, int planes, float tolerance,
-                            __global ushort *peak, __global uchar *peak_plane, __global uchar *confidence)
+                            __global ushort *peak, __global uchar *place, __global uchar *confidence)
 {
     uint16 peaks[4];
     int16 found = 0, confident = 0;
@@ -141,27 +144,27 @@ inline float16 store_pixels(const Kept *kept, int columns, float unit, int plane
     for (int i = 0; i < 4; i++) {
         const int16 inside = 4 * LANE + i < columns;
         const int16 bits = kept->best[i];
-        const float16 p = as_float16(bits & ~LAST_PLANE & inside) * unit;
+        const float16 p = as_float16(bits & ~LAST_PLACE & inside) * unit;
         const float16 mean = as_float16(as_int16(kept->sum[i]) & inside) * (unit / planes);
         peaks[i] = as_uint16(p);
-        found |= select((int16)UNKNOWN_PLANE, LAST_PLANE - (bits & LAST_PLANE), p >= tolerance * mean) << 8 * i;
+        found |= select((int16)UNKNOWN_PLANE, LAST_PLACE - (bits & LAST_PLACE), p >= tolerance * mean) << 8 * i;
         total += mean;
         if (confidence)
             confident |= confidence_of(p, mean, planes) << 8 * i;
     }
     store_pairs(peaks[0] >> 16 | (peaks[1] & 0xffff0000u), peaks[2] >> 16 | (peaks[3] & 0xffff0000u), peak);
-    __builtin_nontemporal_store(found, (__global int16 *)peak_plane);
+    __builtin_nontemporal_store(found, (__global int16 *)place);
     if (confidence)
         store_bytes(confident, confidence, columns);
     return total;
 }
 
-/* One work-item a tile. peak[height][stride]: max_z P as the upper half of a float; peak_plane likewise: where it is,
- * UNKNOWN_PLANE where it is not `tolerance` times the mean over z; tile_sums: sum over a tile's pixels of the mean over
+/* One work-item a tile. peak[height][stride]: max_z P as the upper half of a float; place likewise: where it is, in
+ * half planes, UNKNOWN_PLANE where it is not `tolerance` times the mean over z; tile_sums: sum over a tile's pixels of the mean over
  * z. The stride is in pixels and a multiple of 64; peak is 0 behind the picture's columns. confidence[height][width]
  * as in sparse_depth.cl, if `with_confidence`; mean and moved as in stack_statistics.cl. */
 __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *table, __global ushort *peak,
-                          __global uchar *peak_plane, __global float *tile_sums, __global uchar *confidence,
+                          __global uchar *place, __global float *tile_sums, __global uchar *confidence,
                           __global uchar *mean_luma, __global uchar *moved, int stride, int width, int height,
                           int planes, float tolerance, float threshold_bits, int with_confidence)
 {
@@ -204,7 +207,7 @@ __kernel void focus_tiles(__global const uchar *stack, __global const ulong2 *ta
             const ulong entry = (ulong)(tile.y + y) * stride + tile.x + x;
             const ulong pixel = (ulong)(tile.y + y) * width + tile.x + x;
             total += store_pixels(kept + x / BLOCK * TILE_HEIGHT + y, tile.columns - x, unit, planes, tolerance,
-                                  peak + entry, peak_plane + entry, with_confidence ? confidence + pixel : 0);
+                                  peak + entry, place + entry, with_confidence ? confidence + pixel : 0);
         }
     tile_sums[get_group_id(1) * get_num_groups(0) + get_group_id(0)] = sum_of_lanes(total);
 }

@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * The part of the picture under a column of luma_grid.cl's grid, in strips 16 pixels wide, four rows a vector: steps of
- * luma, those of known pixels, and planes. What fills the last vector counts nowhere.
+ * luma, those of known pixels, and places in half planes. What fills the last vector counts nowhere.
  */
 #define STRIPS ((SIGMA_XY + 15) / 16)
 #define STRIP_VECTORS ((SIGMA_XY + 3) / 4)
@@ -15,7 +15,7 @@
 #define AHEAD 256   /* columns asked for ahead */
 #define OUTSIDE 255 /* not a step of luma, whose least size is 4 */
 typedef struct {
-    uchar64 steps[VECTORS], known_steps[VECTORS], planes[VECTORS];
+    uchar64 steps[VECTORS], known_steps[VECTORS], places[VECTORS];
     int first, last; /* steps among them */
 } Area;
 
@@ -55,13 +55,13 @@ INLINE void load_area(__global const uchar *sparse, __global const uchar *luma, 
                                           y + 2 < bottom ? beside : none, y + 3 < bottom ? beside : none);
 
         const uchar64 pixels = four_rows(luma, first, min(y, bottom - 1), bottom, width);
-        const uchar64 planes = four_rows(sparse, first, min(y, bottom - 1), bottom, width);
+        const uchar64 places = four_rows(sparse, first, min(y, bottom - 1), bottom, width);
         const uchar64 step = __builtin_convertvector(
             __builtin_convertvector(pixels, ushort64) / (ushort)SIGMA_LUMA, uchar64);
         const uchar64 inside = step & ~outside;
         area->steps[i] = step | outside;
-        area->known_steps[i] = step | outside | equal(planes, UNKNOWN_PLANE);
-        area->planes[i] = planes;
+        area->known_steps[i] = step | outside | equal(places, UNKNOWN_PLANE);
+        area->places[i] = places;
         least = area->steps[i] < least ? area->steps[i] : least;
         most = inside > most ? inside : most;
     }
@@ -69,7 +69,7 @@ INLINE void load_area(__global const uchar *sparse, __global const uchar *luma, 
     area->last = most_of(most);
 }
 
-/* Pixels of an area in a step of luma, known ones, and the sum of their planes. (Compilers count the bits of truth
+/* Pixels of an area in a step of luma, known ones, and the sum of their places. (Compilers count the bits of truth
  * values.) */
 INLINE uint3 count_step(const Area *area, uchar step)
 {
@@ -81,8 +81,8 @@ INLINE uint3 count_step(const Area *area, uchar step)
             const uchar64 tells = equal(area->known_steps[i + j], step);
             count.x += sum_of_bytes(equal(area->steps[i + j], step) & (uchar)1);
             count.y += sum_of_bytes(tells & (uchar)1);
-            sums += tells & area->planes[i + j];
-            if (j % 4 == 3 || j == STRIP_VECTORS - 1) { /* planes are below 64: four fit a byte */
+            sums += tells & area->places[i + j];
+            if (j % 2 == 1 || j == STRIP_VECTORS - 1) { /* places are below 128: two fit a byte */
                 count.z += sum_of_bytes(sums);
                 sums = 0;
             }

@@ -87,24 +87,24 @@ __kernel void splat_rows(__global const uchar *sparse, __global const uchar *lum
         Area area;
         load_area(sparse, luma, left, top, width, height, &area);
         for (int step = 0; step < COLUMN - 1; step += 16) {
-            uint16 pixels = 0, known = 0, planes = 0;
+            uint16 pixels = 0, known = 0, places = 0;
             for (int i = max(area.first, step); i <= min(area.last, step + 15); i++) {
                 const uint3 count = count_step(&area, (uchar)i);
                 const int16 here = LANE == i - step;
                 pixels = here ? (uint16)count.x : pixels;
                 known = here ? (uint16)count.y : known;
-                planes = here ? (uint16)count.z : planes;
+                places = here ? (uint16)count.z : places;
             }
             put(mass, cell + step, convert_float16(pixels));
             put(weight, cell + step, convert_float16(known));
-            put(target, cell + step, convert_float16(planes));
+            put(target, cell + step, 0.5f * convert_float16(places));
             put(n, cell + step, pixels > 0u ? (float16)1.0f : (float16)0.0f);
             weights += known;
-            targets += planes;
+            targets += places;
         }
     }
     row_sums[get_group_id(0)] =
-        (float2)(sum_of_lanes(convert_float16(targets)), sum_of_lanes(convert_float16(weights)));
+        (float2)(0.5f * sum_of_lanes(convert_float16(targets)), sum_of_lanes(convert_float16(weights)));
 }
 
 /* 1 / sqrt(v) of v > 0 by three of Newton's steps, a third of what a root and a division take. */

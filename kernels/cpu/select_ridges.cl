@@ -30,9 +30,9 @@ inline uchar32 is_ridge(ushort32 peak, ushort32 most, ushort mean)
     return __builtin_convertvector(ridge, uchar32);
 }
 
-/* One work-item a segment of a strip; segments are equal but for the last. `peak` and `peak_plane` have `stride` pixels a row with 16 columns of 0 or more
+/* One work-item a segment of a strip; segments are equal but for the last. `peak` and `place` have `stride` pixels a row with 16 columns of 0 or more
  * between rows; sparse and moved are uchar[height][width]. */
-__kernel void select_ridges(__global const ushort *peak, __global const uchar *peak_plane,
+__kernel void select_ridges(__global const ushort *peak, __global const uchar *place,
                             __global const float *tile_sums, int tiles, __global const uchar *moved,
                             __global uchar *sparse, int stride, int width, int height, int use_moved)
 {
@@ -62,10 +62,10 @@ __kernel void select_ridges(__global const ushort *peak, __global const uchar *p
             for (int j = 1; j <= 2 * RIDGE_RADIUS; j++)
                 most = max32(most, *(const lanes32 *)(window + j * SEGMENT));
             const ulong entry = (ulong)y * stride + from, pixel = (ulong)y * width + from;
-            PREFETCH(peak_plane + entry + AHEAD * stride);
+            PREFETCH(place + entry + AHEAD * stride);
             PREFETCH(moved + pixel + AHEAD * width);
             const uchar32 ridge = is_ridge(*(__global const lanes32 *)(peak + entry), most, mean);
             const uchar32 still = use_moved ? ~*(__global const bytes32 *)(moved + pixel) : (uchar32)255;
-            *(__global bytes32 *)(sparse + pixel) = *(__global const bytes32 *)(peak_plane + entry) | ~(ridge & still);
+            *(__global bytes32 *)(sparse + pixel) = *(__global const bytes32 *)(place + entry) | ~(ridge & still);
         }
 }

@@ -108,7 +108,7 @@ void BilateralGrid::splat(const SparseDepth &sparse, const ReferenceImage &refer
 {
     for (const cl::Buffer *vector : {&mass_, &weight_, &target_})
         queue_.commands().enqueueFillBuffer(*vector, cl_float{0}, 0, all_cells_ * sizeof(cl_float));
-    queue_.run(splat_, {static_cast<size_t>(columns_), static_cast<size_t>(rows_)}, sparse.planes(),
+    queue_.run(splat_, {static_cast<size_t>(columns_), static_cast<size_t>(rows_)}, sparse.places(),
                reference.y(), reference.u(), reference.v(), mass_, weight_, target_,
                static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), columns_, stride_,
                sigma_);

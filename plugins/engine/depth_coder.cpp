@@ -12,7 +12,7 @@ DepthCoder::DepthCoder(CommandQueue &queue, const StackShape &shape)
 {
     const Program program(queue.device(), "depth_code");
     code_positions_ = program.kernel("code_positions");
-    code_planes_ = program.kernel("code_planes");
+    code_places_ = program.kernel("code_places");
     set_encoder(encoder_);
 }
 
@@ -51,9 +51,9 @@ void DepthCoder::code_positions(const cl::Buffer &positions, const cl::Buffer &d
                static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
 }
 
-void DepthCoder::code_planes(const cl::Buffer &planes, const cl::Buffer &depth)
+void DepthCoder::code_places(const cl::Buffer &places, const cl::Buffer &depth)
 {
-    queue_.run(code_planes_, {shape_.width, shape_.height}, planes, codes_, depth,
+    queue_.run(code_places_, {shape_.width, shape_.height}, places, codes_, depth,
                static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.planes));
 }
 

@@ -28,13 +28,13 @@ public:
     /* ushort[height][width] from float positions, 0 from NAN. */
     void code_positions(const cl::Buffer &positions, const cl::Buffer &depth);
 
-    /* ushort[height][width] from uchar planes, 0 from SparseDepth::unknown_plane. */
-    void code_planes(const cl::Buffer &planes, const cl::Buffer &depth);
+    /* ushort[height][width] from uchar half planes, 0 from SparseDepth::unknown_plane. */
+    void code_places(const cl::Buffer &places, const cl::Buffer &depth);
 
 private:
     CommandQueue &queue_;
     StackShape shape_;
-    cl::Kernel code_positions_, code_planes_;
+    cl::Kernel code_positions_, code_places_;
     cl::Buffer codes_, slopes_;
     DepthEncoder encoder_;
     bool has_slopes_ = false; /* of encoder_ */

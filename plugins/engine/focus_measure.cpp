@@ -40,7 +40,7 @@ FocusMeasure::FocusMeasure(CommandQueue &queue, const StackShape &shape, unsigne
     coarse_ = queue.allocate(Level(shape, 2, coarse_margin).samples() * sizeof(cl_float));
     gradient_ = queue.allocate(gradients * sizeof(cl_float));
     peak_ = queue.allocate(pixels * sizeof(cl_float));
-    peak_plane_ = queue.allocate(pixels);
+    place_ = queue.allocate(pixels);
     mean_ = queue.allocate(pixels * sizeof(cl_float));
 }
 
@@ -60,7 +60,7 @@ void FocusMeasure::run(const Luma &luma)
         first += gradient.samples();
     }
     queue_.run(focus_product_, {shape_.width, shape_.height}, luma.bytes(), luma.rows(), gradient_, peak_,
-               peak_plane_, mean_, width, height, static_cast<cl_int>(shape_.planes));
+               place_, mean_, width, height, static_cast<cl_int>(shape_.planes));
 }
 
 } // namespace dff

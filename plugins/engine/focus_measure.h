@@ -14,16 +14,16 @@ public:
 
     void run(const Luma &luma);
 
-    const cl::Buffer &peak() const { return peak_; }             /* float[height][width]: max_z P */
-    const cl::Buffer &peak_plane() const { return peak_plane_; } /* uchar[height][width]: where it is */
-    const cl::Buffer &mean() const { return mean_; }             /* float[height][width]: mean_z P */
+    const cl::Buffer &peak() const { return peak_; }   /* float[height][width]: max_z P */
+    const cl::Buffer &place() const { return place_; } /* uchar[height][width]: where it is, in half planes */
+    const cl::Buffer &mean() const { return mean_; }   /* float[height][width]: mean_z P */
 
 private:
     CommandQueue &queue_;
     StackShape shape_;
     unsigned levels_;
     cl::Kernel downsample_, coarse_gradient_, focus_product_;
-    cl::Buffer coarse_, gradient_, peak_, peak_plane_, mean_;
+    cl::Buffer coarse_, gradient_, peak_, place_, mean_;
 };
 
 } // namespace dff

@@ -30,7 +30,7 @@ void PaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted 
     if (wanted.sparse) {
         if (!sparse_depth_())
             sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
-        coder.code_planes(sparse_.planes(), sparse_depth_);
+        coder.code_places(sparse_.places(), sparse_depth_);
     }
     if (wanted.confidence)
         sparse_.run_confidence(focus_);

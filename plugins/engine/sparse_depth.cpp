@@ -26,15 +26,14 @@ void SparseDepth::run(const FocusMeasure &focus, const ZEntropy *motion)
     const auto width = static_cast<cl_int>(shape_.width), height = static_cast<cl_int>(shape_.height);
     const cl::NDRange pixels(shape_.width, shape_.height);
     /* A kernel argument must be some buffer; it is not read when nothing is known of motion. */
-    const cl::Buffer &moved = motion ? motion->moved() : focus.peak_plane();
+    const cl::Buffer &moved = motion ? motion->moved() : focus.place();
 
     queue_.begin_stage("sparse-depth");
     queue_.run(sum_rows_, {shape_.height}, focus.mean(), row_sums_, width, height);
     queue_.run(mean_of_rows_, {1}, row_sums_, total_mean_, width, height);
     queue_.run(row_maximum_kernel_, pixels, focus.peak(), row_maximum_, width);
-    queue_.run(select_ridges_, pixels, focus.peak(), focus.peak_plane(), focus.mean(), row_maximum_,
-               total_mean_, moved, sparse_, width, height, tolerance_,
-               static_cast<cl_int>(motion != nullptr));
+    queue_.run(select_ridges_, pixels, focus.peak(), focus.place(), focus.mean(), row_maximum_, total_mean_,
+               moved, sparse_, width, height, tolerance_, static_cast<cl_int>(motion != nullptr));
 }
 
 void SparseDepth::run_confidence(const FocusMeasure &focus)

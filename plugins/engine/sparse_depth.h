@@ -21,7 +21,10 @@ public:
     /* Writes the confidence uchar[height][width] of the focus measure. */
     void run_confidence(const FocusMeasure &focus);
 
-    const cl::Buffer &planes() const { return sparse_; }         /* uchar[height][width] or unknown_plane */
+    const cl::Buffer &places() const
+    {
+        return sparse_;
+    } /* uchar[height][width], half planes or unknown_plane */
     const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
 
 private:

@@ -17,12 +17,12 @@ void CpuPaperMethod::run(const StackBuffer &stack, DepthCoder &coder, const Want
 {
     luma_.run(stack);
     focus_.run(luma_, motion_mask_, wanted.confidence);
-    grid_.run(focus_.planes(), focus_.mean());
+    grid_.run(focus_.places(), focus_.mean());
     slice_.run(grid_, focus_.mean(), coder, depth);
     if (wanted.sparse) {
         if (!sparse_depth_())
             sparse_depth_ = queue_.allocate(size_t{shape_.width} * shape_.height * sizeof(cl_ushort));
-        coder.code_planes(focus_.planes(), sparse_depth_);
+        coder.code_places(focus_.places(), sparse_depth_);
     }
 }
 

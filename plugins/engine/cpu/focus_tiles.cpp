@@ -26,7 +26,7 @@ FocusTiles::FocusTiles(CommandQueue &queue, const StackShape &shape, unsigned le
       focus_tiles_(
           Program(queue.device(), "focus_tiles", "-DLEVELS=" + std::to_string(levels)).kernel("focus_tiles")),
       select_ridges_(Program(queue.device(), "select_ridges").kernel("select_ridges")),
-      peak_plane_(queue.allocate(stride_ * shape.height)),
+      place_(queue.allocate(stride_ * shape.height)),
       tile_sums_(queue.allocate(tiles_.get()[0] * tiles_.get()[1] * sizeof(cl_float))),
       sparse_(queue.allocate(size_t{shape.width} * shape.height)),
       mean_(queue.allocate(size_t{shape.width} * shape.height)),
@@ -50,13 +50,13 @@ void FocusTiles::run(const LumaPlanes &luma, bool motion_mask, bool with_confide
 
     /* A kernel argument must be some buffer, also where it is not used. */
     queue_.begin_stage("focus-measure");
-    queue_.run_groups(focus_tiles_, tiles_, luma.bytes(), luma.rows(), peak_, peak_plane_, tile_sums_,
-                      with_confidence ? confidence_ : peak_plane_, mean_, moved_, stride, width, height,
-                      planes, tolerance_, entropy_bits_, static_cast<cl_int>(with_confidence));
+    queue_.run_groups(focus_tiles_, tiles_, luma.bytes(), luma.rows(), peak_, place_, tile_sums_,
+                      with_confidence ? confidence_ : place_, mean_, moved_, stride, width, height, planes,
+                      tolerance_, entropy_bits_, static_cast<cl_int>(with_confidence));
 
     queue_.begin_stage("sparse-depth");
     queue_.run_groups(select_ridges_, {parts_of(shape_.width, segment), parts_of(shape_.height, strip)},
-                      peak_, peak_plane_, tile_sums_, tiles, moved_, sparse_, stride, width, height,
+                      peak_, place_, tile_sums_, tiles, moved_, sparse_, stride, width, height,
                       static_cast<cl_int>(motion_mask));
 }
 

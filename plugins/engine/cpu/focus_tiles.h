@@ -18,7 +18,10 @@ public:
     /* Without those that moved, if `motion_mask`. */
     void run(const LumaPlanes &luma, bool motion_mask, bool with_confidence);
 
-    const cl::Buffer &planes() const { return sparse_; }         /* uchar[height][width] or unknown_plane */
+    const cl::Buffer &places() const
+    {
+        return sparse_;
+    } /* uchar[height][width], half planes or unknown_plane */
     const cl::Buffer &confidence() const { return confidence_; } /* uchar[height][width] */
     const cl::Buffer &mean() const { return mean_; }             /* uchar[height][width] */
     const cl::Buffer &moved() const { return moved_; }           /* uchar[height][width]: 255 = moved */
@@ -30,7 +33,7 @@ private:
     size_t stride_;
     cl::NDRange tiles_;
     cl::Kernel focus_tiles_, select_ridges_;
-    cl::Buffer peak_memory_, peak_, peak_plane_, tile_sums_, sparse_, confidence_, mean_, moved_;
+    cl::Buffer peak_memory_, peak_, place_, tile_sums_, sparse_, confidence_, mean_, moved_;
 };
 
 } // namespace dff

@@ -51,7 +51,7 @@ TEST_P(BilateralGridParameters, agrees_with_its_twin)
         return chroma ? read_back<uint8_t>(stages.queue, buffer, pixels) : std::vector<uint8_t>();
     };
     const Volume expected = twin::bilateral_solve(
-        read_back<uint8_t>(stages.queue, stages.sparse.planes(), pixels),
+        read_back<uint8_t>(stages.queue, stages.sparse.places(), pixels),
         read_back<uint8_t>(stages.queue, stages.reference.y(), pixels), chroma_of(stages.reference.u()),
         chroma_of(stages.reference.v()), 150, 101, GetParam());
     const auto found = read_back<float>(stages.queue, stages.grid.u(), pixels);

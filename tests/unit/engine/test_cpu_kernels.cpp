@@ -97,7 +97,7 @@ TEST_P(FocusTilesShapes, agree_with_the_twin)
     const twin::Focus focus = twin::focus_product(twin::luma(stack), c.levels);
     const std::vector<uint8_t> expected = twin::sparse_depth(focus, nullptr, 1.4f);
     const size_t pixels = expected.size();
-    const Agreement agreement(read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels), expected);
+    const Agreement agreement(read_back<uint8_t>(stages.queue, stages.focus.places(), pixels), expected);
     EXPECT_GE(agreement.same_plane, c.planes > 16 ? 0.985f : 0.99f);
     EXPECT_LE(agreement.kept_by_one, c.kept_by_one);
 
@@ -109,6 +109,21 @@ TEST_P(FocusTilesShapes, agree_with_the_twin)
         far_off += std::abs(confidence[i] - 255.0f * above * c.planes / (c.planes - 1)) > 8.0f;
     }
     EXPECT_LE(share_of(far_off, pixels), 0.07f);
+}
+
+TEST(CpuKernels, between_planes_that_are_equally_sharp_is_their_middle)
+{
+    for (const unsigned equal : {1u, 2u, 3u}) {
+        const TestStack stack = stack_with_equal_planes(2, equal);
+        Stages stages(stack);
+        stages.focus.run(stages.luma, false, false);
+        const size_t pixels = size_t{stack.shape.width} * stack.shape.height;
+        const auto places = read_back<uint8_t>(stages.queue, stages.focus.places(), pixels);
+        EXPECT_GT(std::ranges::count(places, 2 * 2 + equal - 1), pixels / 20);
+        EXPECT_EQ(std::ranges::count(places, 2 * 2 + equal - 1) +
+                      std::ranges::count(places, SparseDepth::unknown_plane),
+                  pixels);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(CpuKernels, FocusTilesShapes,
@@ -169,10 +184,10 @@ TEST_P(LumaGridParameters, depth_agrees_with_the_twin)
     const DepthCoder coder(stages.queue, shape);
     const size_t pixels = 150 * 101;
     const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
-    grid.run(stages.focus.planes(), stages.focus.mean());
+    grid.run(stages.focus.places(), stages.focus.mean());
     slice.run(grid, stages.focus.mean(), coder, depth);
 
-    const auto sparse = read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels);
+    const auto sparse = read_back<uint8_t>(stages.queue, stages.focus.places(), pixels);
     const auto luma = read_back<uint8_t>(stages.queue, stages.focus.mean(), pixels);
     const Volume expected =
         twin::gaussian_blur(twin::bilateral_solve(sparse, luma, {}, {}, 150, 101, GetParam()),
@@ -202,11 +217,11 @@ TEST(CpuKernels, the_first_start_agrees_with_its_twin)
     const DepthCoder coder(stages.queue, shape);
     const size_t pixels = 150 * 101;
     const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
-    grid.run(stages.focus.planes(), stages.focus.mean());
+    grid.run(stages.focus.places(), stages.focus.mean());
     slice.run(grid, stages.focus.mean(), coder, depth);
 
     const Volume expected = twin::gaussian_blur(
-        twin::spread_start(read_back<uint8_t>(stages.queue, stages.focus.planes(), pixels),
+        twin::spread_start(read_back<uint8_t>(stages.queue, stages.focus.places(), pixels),
                            read_back<uint8_t>(stages.queue, stages.focus.mean(), pixels), 150, 101,
                            no_iterations),
         GaussianBlur::taps_for(no_iterations.sigma_xy));
@@ -226,11 +241,11 @@ TEST(CpuKernels, a_flat_scene_keeps_its_plane_to_16_bits)
     DepthSlice slice(stages.queue, shape, grid);
     const DepthCoder coder(stages.queue, shape);
     const size_t pixels = 150 * 101;
-    const cl::Buffer planes = stages.queue.allocate(pixels);
+    const cl::Buffer places = stages.queue.allocate(pixels);
     const cl::Buffer depth = stages.queue.allocate(pixels * sizeof(uint16_t));
     for (const uint8_t plane : {0, 2, 5}) {
-        stages.queue.commands().enqueueFillBuffer(planes, plane, 0, pixels);
-        grid.run(planes, stages.focus.mean());
+        stages.queue.commands().enqueueFillBuffer(places, static_cast<uint8_t>(2 * plane), 0, pixels);
+        grid.run(places, stages.focus.mean());
         slice.run(grid, stages.focus.mean(), coder, depth);
         for (const uint16_t pixel : read_back<uint16_t>(stages.queue, depth, pixels))
             ASSERT_NEAR(pixel, 1 + 65534 * plane / 5, 10);
@@ -245,7 +260,7 @@ TEST(CpuKernels, a_grid_goes_on_from_the_last_solution_where_that_is_better)
     stages.focus.run(stages.luma, false, false);
     LumaGrid grid(stages.queue, 150, 101, {16, 16, 0, 0.1f, 6});
     const auto residual_of_run = [&] {
-        grid.run(stages.focus.planes(), stages.focus.mean());
+        grid.run(stages.focus.places(), stages.focus.mean());
         return read_back<float>(stages.queue, grid.residual_norm(), 1)[0];
     };
     const float first = residual_of_run();
@@ -268,7 +283,7 @@ TEST(CpuKernels, a_grid_works_again_after_nothing_was_known)
         stages.buffer.assign(each->view());
         stages.luma.run(stages.buffer);
         stages.focus.run(stages.luma, false, false);
-        grid.run(stages.focus.planes(), stages.focus.mean());
+        grid.run(stages.focus.places(), stages.focus.mean());
         slice.run(grid, stages.focus.mean(), coder, depth);
         for (const uint16_t pixel : read_back<uint16_t>(stages.queue, depth, 96 * 80))
             ASSERT_EQ(pixel == 0, each == &blank);

@@ -3,6 +3,7 @@
 #include "engine/focus_measure.h"
 #include "twin_focus.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 using namespace dff;
@@ -36,19 +37,36 @@ TEST_P(FocusMeasureShapes, agrees_with_its_twin)
     focus.run(luma);
 
     const twin::Focus expected = twin::focus_product(twin::luma(stack), c.levels);
-    const size_t pixels = expected.peak_plane.size();
+    const size_t pixels = expected.place.size();
     const auto peak = read_back<float>(queue, focus.peak(), pixels);
     const auto mean = read_back<float>(queue, focus.mean(), pixels);
-    const auto plane = read_back<uint8_t>(queue, focus.peak_plane(), pixels);
-    size_t other_planes = 0;
+    const auto place = read_back<uint8_t>(queue, focus.place(), pixels);
+    size_t other_places = 0;
     for (size_t i = 0; i < pixels; i++) {
         ASSERT_NEAR(peak[i], expected.peak.values[i], 1e-4f * expected.peak.values[i] + 1e-3f)
             << "pixel " << i;
         ASSERT_NEAR(mean[i], expected.mean.values[i], 1e-4f * expected.mean.values[i] + 1e-3f)
             << "pixel " << i;
-        other_planes += plane[i] != expected.peak_plane[i];
+        other_places += place[i] != expected.place[i];
     }
-    EXPECT_LE(other_planes, pixels / 1000) << "planes may differ only where two are equal within rounding";
+    EXPECT_LE(other_places, pixels / 1000) << "places may differ only where two are equal within rounding";
+}
+
+TEST(FocusMeasure, between_planes_that_are_equally_sharp_is_their_middle)
+{
+    for (const unsigned equal : {1u, 2u, 3u}) {
+        const TestStack stack = stack_with_equal_planes(2, equal);
+        CommandQueue queue(Device::open(""));
+        StackBuffer buffer(queue, stack.shape);
+        Luma luma(queue, stack.shape);
+        FocusMeasure focus(queue, stack.shape, 3);
+        buffer.assign(stack.view());
+        luma.run(buffer);
+        focus.run(luma);
+        const size_t pixels = size_t{stack.shape.width} * stack.shape.height;
+        const auto places = read_back<uint8_t>(queue, focus.place(), pixels);
+        EXPECT_GT(std::ranges::count(places, 2 * 2 + equal - 1), pixels * 9 / 10);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(

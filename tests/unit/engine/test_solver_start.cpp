@@ -26,7 +26,7 @@ struct Known {
                     static_cast<uint8_t>(128.0f + 70.0f * std::sin(wave * x) + 40.0f * std::sin(0.07f * y)));
                 const float plane = 0.5f * (planes - 1) * (1.0f + 0.9f * std::sin(slope * x + 0.02f * y));
                 sparse.push_back((x + 2 * y) % 3 ? SparseDepth::unknown_plane
-                                                 : static_cast<uint8_t>(std::lround(plane)));
+                                                 : static_cast<uint8_t>(2 * std::lround(plane)));
             }
     }
 

@@ -50,7 +50,7 @@ TEST(SparseDepth, agrees_with_its_twin)
 
     stages.sparse.run(stages.focus, nullptr);
     const auto kept = twin::sparse_depth(focus, nullptr, 1.4f);
-    EXPECT_LE(differences(read_back<uint8_t>(stages.queue, stages.sparse.planes(), pixels), kept),
+    EXPECT_LE(differences(read_back<uint8_t>(stages.queue, stages.sparse.places(), pixels), kept),
               pixels / 1000);
     const auto unknown = std::count(kept.begin(), kept.end(), 255);
     EXPECT_GT(unknown, 0);
@@ -59,7 +59,7 @@ TEST(SparseDepth, agrees_with_its_twin)
     stages.sparse.run(stages.focus, &stages.entropy);
     const auto moved = twin::z_entropy(twin::luma(stack), 0.5f);
     const auto still = twin::sparse_depth(focus, &moved, 1.4f);
-    EXPECT_LE(differences(read_back<uint8_t>(stages.queue, stages.sparse.planes(), pixels), still),
+    EXPECT_LE(differences(read_back<uint8_t>(stages.queue, stages.sparse.places(), pixels), still),
               pixels / 1000);
     EXPECT_NE(kept, still);
 }
@@ -70,7 +70,7 @@ TEST(SparseDepth, a_picture_without_any_texture_is_unknown)
     std::fill(stack.memory.begin(), stack.memory.end(), std::byte{90});
     Stages stages(stack);
     stages.sparse.run(stages.focus, nullptr);
-    for (const uint8_t plane : read_back<uint8_t>(stages.queue, stages.sparse.planes(), 64 * 64))
+    for (const uint8_t plane : read_back<uint8_t>(stages.queue, stages.sparse.places(), 64 * 64))
         ASSERT_EQ(plane, SparseDepth::unknown_plane);
 }
 

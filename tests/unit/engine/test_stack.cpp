@@ -33,6 +33,25 @@ TestStack::TestStack(const StackShape &shape, unsigned seed)
     }
 }
 
+TestStack stack_with_equal_planes(unsigned first, unsigned equal)
+{
+    const StackShape shape{PixelFormat::Gray8, 150, 101, 6};
+    TestStack stack(shape);
+    std::mt19937 random(5);
+    std::uniform_int_distribution<int> texture(-60, 60);
+    for (unsigned y = 0; y < shape.height; y++)
+        for (unsigned x = 0; x < shape.width; x++) {
+            const int value = texture(random);
+            for (unsigned z = 0; z < shape.planes; z++) {
+                const int away = z < first ? first - z : z >= first + equal ? z - first - equal + 1 : 0;
+                const RowLayout &rows = stack.layout[z];
+                stack.memory[rows.offset + rows.stride * y + x] =
+                    static_cast<std::byte>(128 + value / (1 + away));
+            }
+        }
+    return stack;
+}
+
 std::shared_ptr<Device> device_with(KernelStyle style)
 {
     return std::make_shared<Device>(Device::open("")->device(), style);

@@ -25,6 +25,9 @@ struct TestStack {
     std::vector<std::byte> memory;
 };
 
+/* Texture of six planes, of which `equal` from `first` on are the same and show it most. */
+TestStack stack_with_equal_planes(unsigned first, unsigned equal);
+
 /* The default device, whatever it is, with kernels of one style. */
 std::shared_ptr<Device> device_with(KernelStyle style);
 

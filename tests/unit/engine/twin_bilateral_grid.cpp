@@ -83,7 +83,7 @@ struct Problem {
             mass[cell] += 1.0;
             if (sparse[pixel] != 255) {
                 weight[cell] += 1.0;
-                target[cell] += sparse[pixel];
+                target[cell] += 0.5 * sparse[pixel];
             }
         }
         for (int step = 0; step < 10; step++) {
@@ -194,7 +194,7 @@ Volume spread_start(const std::vector<uint8_t> &sparse, const std::vector<uint8_
     };
     for (size_t pixel = 0; pixel < sparse.size(); pixel++)
         if (sparse[pixel] != 255) {
-            cells[cell_of(pixel)].first += sparse[pixel];
+            cells[cell_of(pixel)].first += 0.5 * sparse[pixel];
             cells[cell_of(pixel)].second += 1.0;
         }
 

@@ -110,14 +110,18 @@ Focus focus_product(const Volume &luma, unsigned levels)
     Focus focus{Volume(luma.width, luma.height, 1), Volume(luma.width, luma.height, 1), {}};
     for (unsigned y = 0; y < luma.height; y++)
         for (unsigned x = 0; x < luma.width; x++) {
-            unsigned best = 0;
+            unsigned best = 0, place = 0;
             for (unsigned z = 0; z < luma.planes; z++) {
-                if (product.at(x, y, z) > product.at(x, y, best))
+                if (product.at(x, y, z) > product.at(x, y, best)) {
                     best = z;
+                    place = 2 * z;
+                } else if (z > best && product.at(x, y, z) == product.at(x, y, best)) {
+                    place++;
+                }
                 focus.mean.at(x, y) += product.at(x, y, z) / luma.planes;
             }
             focus.peak.at(x, y) = product.at(x, y, best);
-            focus.peak_plane.push_back(static_cast<uint8_t>(best));
+            focus.place.push_back(static_cast<uint8_t>(place));
         }
     return focus;
 }
@@ -156,7 +160,7 @@ std::vector<uint8_t> sparse_depth(const Focus &focus, const std::vector<uint8_t>
             const bool sharp =
                 p > 0.0f && p >= tolerance * focus.mean.at(x, y) && p >= total_mean && p >= 0.5f * highest;
             const size_t pixel = static_cast<size_t>(y) * width + x;
-            sparse.push_back(sharp && !(moved && (*moved)[pixel]) ? focus.peak_plane[pixel] : 255);
+            sparse.push_back(sharp && !(moved && (*moved)[pixel]) ? focus.place[pixel] : 255);
         }
     return sparse;
 }

@@ -12,7 +12,7 @@ Volume luma(const TestStack &stack);
 
 struct Focus {
     Volume peak, mean;
-    std::vector<uint8_t> peak_plane;
+    std::vector<uint8_t> place;
 };
 Focus focus_product(const Volume &luma, unsigned levels);
 
