@@ -192,10 +192,11 @@ void DepthComposer::get_stats(GValue *value)
 {
     const std::lock_guard lock(mutex);
     const std::string name = std::string(kind()) + "-stats";
-    g_value_take_boxed(value,
-                       gst_structure_new(name.c_str(), "pictures", G_TYPE_UINT64, pictures_, "without-depth",
-                                         G_TYPE_UINT64, without_depth_, "compute-ms", G_TYPE_DOUBLE,
-                                         static_cast<gdouble>(compute_time_) / 1e6, nullptr));
+    GstStructure *stats = gst_structure_new(
+        name.c_str(), "pictures", G_TYPE_UINT64, pictures_, "without-depth", G_TYPE_UINT64, without_depth_,
+        "compute-ms", G_TYPE_DOUBLE, static_cast<gdouble>(compute_time_) / 1e6, nullptr);
+    add_stats(stats);
+    g_value_take_boxed(value, stats);
 }
 
 } // namespace dff

@@ -62,6 +62,9 @@ private:
     /* `depth` may be nullptr. */
     virtual GstBuffer *compose(GstBuffer *main, GstBuffer *depth) = 0;
 
+    /* What else there is to tell in `stats`; called under the mutex. */
+    virtual void add_stats(GstStructure *) const {}
+
     const gchar *kind() const;
     std::string device_wish();
     GstFlowReturn compose_and_push(GstBuffer *main, GstBuffer *depth);

@@ -118,6 +118,7 @@ void LightFieldPicture::ensure_renderer()
             *device_, [&] { renderer_ = std::make_unique<LightFieldRenderer>(device_, shape, parameters); });
         renderer_->set_positions(sweep_positions(facts_));
     }
+    disparity_ = LightFieldDisparity(parameters, size_of(output_));
     settings_changed_ = false;
 }
 

@@ -5,6 +5,7 @@
 #include "color_converter.h"
 #include "engine/light_field_renderer.h"
 #include "gstcl/picture_pool.h"
+#include "light_field_disparity.h"
 #include "light_field_settings.h"
 #include "sweep_positions.h"
 
@@ -38,6 +39,9 @@ public:
      * std::exception with a user's text if depth and colour do not fit each other. */
     GstBuffer *compose(GstBuffer *color, GstBuffer *depth);
 
+    /* Of the last picture. */
+    const LightFieldDisparity &disparity() const { return disparity_; }
+
 private:
     void ensure_renderer();
     void read_facts(GstBuffer *depth);
@@ -51,6 +55,7 @@ private:
     ColorConverter converter_; /* to the format of the output */
     GstDepthInfo caps_facts_{};
     DepthFacts facts_;
+    LightFieldDisparity disparity_;
     PicturePool pool_;
     std::vector<guint16> no_depth_; /* zeros, for pictures without a depth map */
     guint64 next_picture_ = 0;

@@ -12,7 +12,10 @@
  * Colour and depth are matched by their running time; without timestamps the first goes with the first, and
  * so on. A picture without depth comes out flat. Put a queue on every branch. Pictures of up to 8192x8192
  * pixels come in, those that go out may have 16384x16384, in the colours' own format or another that
- * downstream wants. The OpenCL device is shared with the neighbours, or given by the application: see
+ * downstream wants. An element message, lightfieldcompose-disparity, tells at the start and whenever it
+ * changes how far the ends of the sweep move between the outermost views, and how far they may and still look
+ * sharp (disparity, sharp-disparity: pixels of a view or of the panel); beyond that, a warning follows. The
+ * OpenCL device is shared with the neighbours, or given by the application: see
  * gst_context_new_dff_device().
  *
  * A quilt for a Looking Glass Portrait, at half its usual size; file-suffix is what players want at the end
@@ -43,26 +46,25 @@
 #include "lightfieldcompose.h"
 
 #include "depth_matching.h"
+#include "disparity_message.h"
 #include "display_preset.h"
 #include "gstcl/depth_composer.h"
+#include "light_field_caps.h"
 #include "light_field_picture.h"
 #include "lightfieldcompose_properties.h"
 
-#include <cmath>
 #include <gst/dff/dff.h>
 
 GST_DEBUG_CATEGORY_STATIC(light_field_compose_debug);
 #define GST_CAT_DEFAULT light_field_compose_debug
 
-#define RGB_FORMATS "RGBx, BGRx, RGB, BGR"
-
 static GstStaticPadTemplate color_template =
     GST_STATIC_PAD_TEMPLATE("color", GST_PAD_SINK, GST_PAD_ALWAYS,
-                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " RGB_FORMATS ", I420, NV12 }")));
+                            GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " DFF_RGB_FORMATS ", I420, NV12 }")));
 static GstStaticPadTemplate depth_template = GST_STATIC_PAD_TEMPLATE(
     "depth", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("GRAY16_LE")));
 static GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " RGB_FORMATS " }")));
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ " DFF_RGB_FORMATS " }")));
 
 namespace {
 
@@ -88,7 +90,7 @@ public:
 
 private:
     void open_device(std::shared_ptr<dff::Device> device) override;
-    void close_device() override { picture_.stop(); }
+    void close_device() override;
     bool set_main_caps(const GstCaps *caps) override;
     bool set_depth_caps(const GstCaps *caps) override;
     std::optional<GstBuffer *> matching_depth(GstAggregatorPad *color_pad, GstBuffer *color,
@@ -97,6 +99,8 @@ private:
         return dff::matching_depth(color_pad, color, depth_pad);
     }
     GstBuffer *compose(GstBuffer *color, GstBuffer *depth) override;
+    void add_stats(GstStructure *stats) const override { dff::add_disparity(stats, disparity_); }
+    void tell_disparity();
     void apply_settings();
 
     GstAggregator *element_; /* which owns this */
@@ -105,6 +109,7 @@ private:
     dff::LightFieldSettings settings_;
     bool settings_changed_ = true;
     std::string file_suffix_;
+    dff::LightFieldDisparity disparity_; /* as it was told last */
 
     /* The streaming thread's own. */
     dff::LightFieldPicture picture_;
@@ -146,6 +151,13 @@ void State::open_device(std::shared_ptr<dff::Device> device)
     picture_.start(std::move(device));
 }
 
+void State::close_device()
+{
+    picture_.stop();
+    const std::lock_guard lock(mutex);
+    disparity_ = {}; /* told anew at the next start */
+}
+
 bool State::set_main_caps(const GstCaps *caps)
 {
     GstVideoInfo info;
@@ -178,7 +190,21 @@ GstBuffer *State::compose(GstBuffer *color, GstBuffer *depth)
 {
     apply_settings();
     GST_LOG_OBJECT(element_, "%" GST_PTR_FORMAT " with %" GST_PTR_FORMAT, color, depth);
-    return picture_.compose(color, depth);
+    GstBuffer *picture = picture_.compose(color, depth);
+    tell_disparity();
+    return picture;
+}
+
+/* Once a change. */
+void State::tell_disparity()
+{
+    {
+        const std::lock_guard lock(mutex);
+        if (picture_.disparity() == disparity_)
+            return;
+        disparity_ = picture_.disparity();
+    }
+    dff::post_disparity(GST_ELEMENT(element_), picture_.disparity());
 }
 
 void State::make_plan()
@@ -222,47 +248,6 @@ static GstFlowReturn gst_light_field_compose_aggregate(GstAggregator *aggregator
     return GST_LIGHT_FIELD_COMPOSE(aggregator)->state->aggregate();
 }
 
-namespace {
-
-/* How two views are packed, in GStreamer's words; nullptr for anything else. */
-const char *stereo_mode(const dff::LightFieldParameters &parameters)
-{
-    if (parameters.layout != dff::LightFieldLayout::Views || parameters.columns * parameters.rows != 2)
-        return nullptr;
-    return gst_video_multiview_mode_to_caps_string(parameters.columns == 2
-                                                       ? GST_VIDEO_MULTIVIEW_MODE_SIDE_BY_SIDE
-                                                       : GST_VIDEO_MULTIVIEW_MODE_TOP_BOTTOM);
-}
-
-/* Whether views of this size are squeezed to half their width or height: nearer to that than to their own
- * aspect. */
-bool is_half(const dff::LightFieldPlan &plan, double width, double height)
-{
-    const double squeezed = width / height * plan.output.height / plan.output.width;
-    return plan.parameters.columns == 2 ? squeezed < std::sqrt(0.5) : squeezed > std::sqrt(2.0);
-}
-
-} // namespace
-
-/* What the plan makes of the colour's caps, in any format of RGB; first that of the colour, if it is one. */
-static GstCaps *output_caps(const GstVideoInfo &color, const dff::LightFieldPlan &plan)
-{
-    const bool is_rgb = GST_VIDEO_INFO_IS_RGB(&color);
-    g_autofree gchar *text = g_strdup_printf("video/x-raw, format=(string){ %s%s" RGB_FORMATS " }",
-                                             is_rgb ? GST_VIDEO_INFO_NAME(&color) : "", is_rgb ? ", " : "");
-    GstCaps *caps = gst_caps_from_string(text);
-    gst_caps_set_simple(caps, "width", G_TYPE_INT, static_cast<gint>(plan.output.width), "height", G_TYPE_INT,
-                        static_cast<gint>(plan.output.height), "pixel-aspect-ratio", GST_TYPE_FRACTION, 1, 1,
-                        "framerate", GST_TYPE_FRACTION, GST_VIDEO_INFO_FPS_N(&color),
-                        GST_VIDEO_INFO_FPS_D(&color), nullptr);
-    if (const char *mode = stereo_mode(plan.parameters))
-        gst_caps_set_simple(caps, "multiview-mode", G_TYPE_STRING, mode, nullptr);
-    if (plan.any_size)
-        gst_caps_set_simple(caps, "width", GST_TYPE_INT_RANGE, 1, G_MAXINT, "height", GST_TYPE_INT_RANGE, 1,
-                            G_MAXINT, nullptr);
-    return caps;
-}
-
 static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggregator, GstCaps *downstream,
                                                              GstCaps **caps)
 {
@@ -275,7 +260,7 @@ static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggr
         GST_ELEMENT_ERROR(aggregator, RESOURCE, SETTINGS, ("%s", error.what()), (nullptr));
         return GST_FLOW_ERROR;
     }
-    g_autoptr(GstCaps) possible = output_caps(state.color(), state.plan());
+    g_autoptr(GstCaps) possible = dff::light_field_caps(state.color(), state.plan());
     *caps = downstream ? gst_caps_intersect_full(possible, downstream, GST_CAPS_INTERSECT_FIRST)
                        : gst_caps_ref(possible);
     if (!gst_caps_is_empty(*caps))
@@ -291,17 +276,7 @@ static GstFlowReturn gst_light_field_compose_update_src_caps(GstAggregator *aggr
 
 static GstCaps *gst_light_field_compose_fixate_src_caps(GstAggregator *aggregator, GstCaps *caps)
 {
-    const dff::LightFieldPlan &plan = GST_LIGHT_FIELD_COMPOSE(aggregator)->state->plan();
-    caps = gst_caps_make_writable(gst_caps_truncate(caps));
-    GstStructure *structure = gst_caps_get_structure(caps, 0);
-    gst_structure_fixate_field_nearest_int(structure, "width", static_cast<gint>(plan.output.width));
-    gst_structure_fixate_field_nearest_int(structure, "height", static_cast<gint>(plan.output.height));
-    gint width = 0, height = 0;
-    if (stereo_mode(plan.parameters) && gst_structure_get_int(structure, "width", &width) &&
-        gst_structure_get_int(structure, "height", &height) && is_half(plan, width, height))
-        gst_structure_set(structure, "multiview-flags", GST_TYPE_VIDEO_MULTIVIEW_FLAGSET,
-                          GST_VIDEO_MULTIVIEW_FLAGS_HALF_ASPECT, GST_FLAG_SET_MASK_EXACT, nullptr);
-    return gst_caps_fixate(caps);
+    return dff::fixate_light_field_caps(caps, GST_LIGHT_FIELD_COMPOSE(aggregator)->state->plan());
 }
 
 static gboolean gst_light_field_compose_negotiated_src_caps(GstAggregator *aggregator, GstCaps *caps)

@@ -2,8 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "test_pipeline.h"
 
+#include <cmath>
 #include <gst/check/gstharness.h>
 #include <gtest/gtest.h>
+#include <numbers>
 
 using dff::run;
 using dff::TestPipeline;
@@ -298,6 +300,65 @@ TEST(LightFieldCompose, properties_change_while_it_runs)
     harness.push_depth(GST_SECOND / 10);
     g_autoptr(GstBuffer) wider = gst_harness_pull(harness.color());
     EXPECT_EQ(gst_buffer_get_size(wider), 3u * 32 * 3 * 16);
+}
+
+/* The messages of the element `l` with its disparity that are on the bus. */
+static std::vector<std::pair<double, double>> told_disparities(const TestPipeline &pipeline)
+{
+    std::vector<std::pair<double, double>> told;
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline.bin());
+    while (GstMessage *message = gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)) {
+        const GstStructure *fields = gst_message_get_structure(message);
+        double disparity = 0.0, sharp = 0.0;
+        if (gst_structure_get(fields, "disparity", G_TYPE_DOUBLE, &disparity, "sharp-disparity",
+                              G_TYPE_DOUBLE, &sharp, nullptr))
+            told.emplace_back(disparity, sharp);
+        gst_message_unref(message);
+    }
+    return told;
+}
+
+TEST(LightFieldCompose, the_disparity_is_told_once_a_change)
+{
+    std::string endless = scene();
+    for (size_t at; (at = endless.find(" num-buffers=2")) != std::string::npos;)
+        endless.erase(at, std::string(" num-buffers=2").size());
+    TestPipeline pipeline(endless +
+                          "layout=views columns=5 view-cone=30 depth-gain=0.1 ! appsink name=out sync=false "
+                          "max-buffers=1");
+    pipeline.play();
+    const auto pull = [&] {
+        for (int i = 0; i < 6; i++) /* more than lie between the element and the sink's end */
+            gst_sample_unref(pipeline.pull("out"));
+    };
+    pull();
+    auto told = told_disparities(pipeline);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_NEAR(told[0].first, 0.1 * 96 * std::tan(15.0 * std::numbers::pi / 180.0), 1e-6);
+    g_object_set(pipeline.element("l"), "depth-gain", 0.2, nullptr);
+    pull();
+    const auto changed = told_disparities(pipeline);
+    ASSERT_EQ(changed.size(), 1u);
+    EXPECT_NEAR(changed[0].first, 2.0 * told[0].first, 1e-6);
+    EXPECT_EQ(changed[0].second, told[0].second);
+    GstStructure *stats = nullptr;
+    double disparity = 0.0;
+    g_object_get(pipeline.element("l"), "stats", &stats, nullptr);
+    gst_structure_get_double(stats, "disparity", &disparity);
+    gst_structure_free(stats);
+    EXPECT_EQ(disparity, changed[0].first);
+}
+
+TEST(LightFieldCompose, a_disparity_that_is_not_shown_sharply_is_a_warning_that_says_what_to_do)
+{
+    const std::string layout = "layout=views columns=5 view-cone=30 depth-gain=";
+    EXPECT_EQ(run(scene() + layout + "0.14 ! fakesink").warning, "");
+    const dff::Outcome blurred = run(scene() + layout + "0.3 ! fakesink");
+    EXPECT_TRUE(blurred.end_of_stream);
+    EXPECT_NE(blurred.warning.find("they move by 7.7 pixels"), std::string::npos) << blurred.warning;
+    EXPECT_NE(blurred.warning.find("depth-gain of at most 0.15"), std::string::npos) << blurred.warning;
+    EXPECT_EQ(run(scene() + "layout=rgbd depth-gain=9 ! fakesink").warning, "");
+    EXPECT_EQ(run(scene() + "layout=views depth-gain=9 ! fakesink").warning, "");
 }
 
 TEST(LightFieldCompose, a_pad_that_is_not_linked_is_an_error_and_no_hang)
