@@ -26,6 +26,22 @@ cv::Mat1i layers_of(const cv::Mat1f &depth, unsigned planes)
     return layers;
 }
 
+/* Plane position of each layer from `nearest` to `farthest`: the mean of what lies in it. */
+std::vector<double> positions_of(const cv::Mat1f &depth, const cv::Mat1i &layers, unsigned planes,
+                                 int nearest, int farthest)
+{
+    std::vector<double> sums(static_cast<size_t>(farthest - nearest + 1)), pixels(sums.size());
+    for (int y = 0; y < depth.rows; y++)
+        for (int x = 0; x < depth.cols; x++) {
+            const auto layer = static_cast<size_t>(layers(y, x) - nearest);
+            sums[layer] += depth(y, x) * (planes - 1);
+            pixels[layer]++;
+        }
+    for (size_t layer = 0; layer < sums.size(); layer++)
+        sums[layer] /= std::max(pixels[layer], 1.0);
+    return sums;
+}
+
 cv::Mat4f blur_patch(const LayerPatch &patch, const cv::Mat1f &kernel)
 {
     const int reach = kernel.cols / 2;
@@ -91,7 +107,9 @@ ThinLensRenderer::ThinLensRenderer(const Scene &scene, unsigned planes, double b
                                     std::to_string(max_blur_diameter / steps));
     nearest_ = layer_of(shallowest * (planes - 1));
     farthest_ = layer_of(deepest * (planes - 1));
-    tiles_ = cut_scene(scene.color, layers_of(scene.depth, planes), disk_reach(largest), stop);
+    const cv::Mat1i layers = layers_of(scene.depth, planes);
+    positions_ = positions_of(scene.depth, layers, planes, nearest_, farthest_);
+    tiles_ = cut_scene(scene.color, layers, disk_reach(largest), stop);
 }
 
 void ThinLensRenderer::render_tile(const SceneTile &tile, const Layers &layers,
@@ -116,8 +134,8 @@ cv::Mat4f ThinLensRenderer::composite(double z, const Layers &layers, const cv::
                                       const std::stop_token &stop) const
 {
     std::vector<cv::Mat1f> kernels;
-    for (int layer = nearest_; layer <= farthest_; layer++)
-        kernels.push_back(disk_kernel(blur_diameter(layer / layers_per_plane, z)));
+    for (const double position : positions_)
+        kernels.push_back(disk_kernel(blur_diameter(position, z)));
 
     cv::Mat4f picture(size(), cv::Vec4f());
     cv::parallel_for_(cv::Range(0, static_cast<int>(tiles_.size())), [&](const cv::Range &range) {

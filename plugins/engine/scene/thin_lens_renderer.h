@@ -13,8 +13,8 @@ namespace dff {
 
 /* Renders a scene as a thin lens sees it: a pixel at plane position u appears, with the lens focused on z, as
  * a disk of diameter c = blur_step |u - z| pixels (the circle of confusion of a thin lens is linear in
- * dioptres). The scene is cut into layers a quarter of a plane thick that are blurred and laid over each
- * other from far to near, each continued behind the nearer ones. */
+ * dioptres). The scene is cut into layers a quarter of a plane thick that are blurred, each as the mean of
+ * what lies in it, and laid over each other from far to near, each continued behind the nearer ones. */
 class ThinLensRenderer {
 public:
     static constexpr double layers_per_plane = 4.0;
@@ -60,6 +60,7 @@ private:
     double blur_step_;
     int nearest_ = 0;
     int farthest_ = 0;
+    std::vector<double> positions_; /* of the layers */
     std::vector<SceneTile> tiles_;
 };
 

@@ -62,6 +62,17 @@ TEST(ThinLens, a_point_becomes_a_disk_of_blur_step_times_its_distance_from_focus
     EXPECT_EQ(lit_area(renderer.render(1.0)), 1.0);
 }
 
+TEST(ThinLens, a_surface_at_any_depth_is_blurred_by_its_own_distance)
+{
+    for (const float depth : {0.27F, 0.28F, 0.30F, 0.31F}) {
+        Scene scene = flat_scene({201, 201}, {0, 0, 0}, depth);
+        scene.color(100, 100) = {255, 255, 255};
+        const double diameter = 40.0 * (4.0 - 4.0 * depth);
+        const cv::Mat3f picture = ThinLensRenderer(scene, planes, 40.0).render(4.0);
+        EXPECT_NEAR(2.0 * std::sqrt(lit_area(picture) / std::numbers::pi), diameter, 0.5) << depth;
+    }
+}
+
 TEST(ThinLens, what_is_in_focus_stays_sharp)
 {
     Scene scene = flat_scene({300, 150}, {}, 0.5F);
@@ -115,15 +126,21 @@ TEST(ThinLens, the_blur_of_what_is_behind_does_not_leak_over_a_sharp_near_object
 
 TEST(ThinLens, tiles_leave_no_trace)
 {
-    /* The same scene, moved against the grid of tiles. */
+    /* The same scene, moved against the grid of tiles; what leaves it comes in on the other side. */
     const cv::Size size(400, 300);
-    const cv::Rect window(37, 53, 300, 200);
-    Scene scene = dff::make_shapes(size, 3);
-    const Scene moved{scene.color(window).clone(), scene.depth(window).clone(), {}};
-    const cv::Mat3f whole = ThinLensRenderer(scene, planes, 3.0).render(4.0);
-    const cv::Mat3f part = ThinLensRenderer(moved, planes, 3.0).render(4.0);
-    const cv::Rect inner(30, 30, 240, 140);
-    EXPECT_LT(cv::norm(whole(window)(inner), part(inner), cv::NORM_INF), 0.01);
+    const cv::Point offset(37, 53);
+    const Scene scene = dff::make_shapes(size, 3);
+    Scene moved{cv::Mat3b(size), cv::Mat1f(size), {}};
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++) {
+            const cv::Point from((x + offset.x) % size.width, (y + offset.y) % size.height);
+            moved.color(y, x) = scene.color(from);
+            moved.depth(y, x) = scene.depth(from);
+        }
+    const cv::Mat3f picture = ThinLensRenderer(scene, planes, 3.0).render(4.0);
+    const cv::Mat3f other = ThinLensRenderer(moved, planes, 3.0).render(4.0);
+    const cv::Rect inner(30, 30, 280, 180);
+    EXPECT_LT(cv::norm(picture(inner + offset), other(inner), cv::NORM_INF), 0.01);
 }
 
 TEST(ThinLens, behind_and_before_make_up_the_whole)
