@@ -98,6 +98,16 @@ int window_of(const Board &board, const std::vector<cv::Point2f> &corners)
     return std::clamp(static_cast<int>(0.4 * nearest), 3, 24);
 }
 
+cv::Rect window_around(const cv::Point2f &corner, int window)
+{
+    return {cvRound(corner.x) - window, cvRound(corner.y) - window, 2 * window + 1, 2 * window + 1};
+}
+
+bool lies_inside(const cv::Rect &rectangle, const cv::Size &picture)
+{
+    return (rectangle & cv::Rect({}, picture)) == rectangle;
+}
+
 /* Refines corners from where a neighbouring plane has them. */
 std::vector<SeenCorner> corners_in(const cv::Mat1f &picture, const cv::Mat1f &energy,
                                    const std::vector<cv::Point2f> &from, int window)
@@ -107,10 +117,8 @@ std::vector<SeenCorner> corners_in(const cv::Mat1f &picture, const cv::Mat1f &en
                      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-3));
     std::vector<SeenCorner> corners(found.size());
     for (std::size_t k = 0; k < found.size(); k++) {
-        const cv::Rect around(cvRound(found[k].x) - window, cvRound(found[k].y) - window, 2 * window + 1,
-                              2 * window + 1);
-        const bool inside = (around & cv::Rect({}, picture.size())) == around;
-        if (inside && cv::norm(found[k] - from[k]) < window / 2.0)
+        const cv::Rect around = window_around(found[k], window);
+        if (lies_inside(around, picture.size()) && cv::norm(found[k] - from[k]) < window / 2.0)
             corners[k] = {found[k], cv::mean(energy(around))[0]};
     }
     return corners;
@@ -209,9 +217,12 @@ BoardView measure_board(const Board &board, const std::vector<Sweep> &sweeps)
             from = positions_of(view.planes[plane], from);
         }
     }
-    for (const SeenCorner &corner : view.planes[first]) {
-        if (corner.energy == 0.0)
+    for (std::size_t k = 0; k < corners.size(); k++) {
+        const SeenCorner &corner = view.planes[first][k];
+        if (corner.energy == 0.0 && !lies_inside(window_around(corners[k], window), view.picture))
             throw NoBoard("the board touches the border of the picture: move it in");
+        if (corner.energy == 0.0) /* no corner is where one of such a board would be */
+            tell_why(board, true);
         view.corners.push_back(corner.at);
     }
     require_sharpness(view);
