@@ -102,12 +102,25 @@ class Ecp5:
                              "--textcfg", f"{work}/routed.config", "--report", f"{work}/report.json", "--seed", str(seed))
 
     def pack(self, name):
-        self.root.run("ecppack", "--input", f"{tools.WORK}/{name}/routed.config", "--bit", f"{tools.WORK}/{name}/{TOP}.bit")
+        here, work = self.root.work / name, f"{tools.WORK}/{name}"
+        self.root.run("ecppack", "--input", f"{work}/routed.config", "--bit", f"{work}/{TOP}.bit")
+        # What is read back has other names for the same bits, and lacks the settings of the whole: packed again with
+        # these it must be the same bitstream
+        device, rest = self.read_back(name).split("\n", 1)
+        settings = re.findall(r"^\.sysconfig .*$", (here / "routed.config").read_text(encoding="utf-8"), re.MULTILINE)
+        (here / "again.config").write_text("\n".join([device, *settings, rest]), encoding="utf-8")
+        self.root.run("ecppack", "--input", f"{work}/again.config", "--bit", f"{work}/again.bit")
+        if (here / "again.bit").read_bytes() != (here / f"{TOP}.bit").read_bytes():
+            raise tools.Failed("the bitstream has other bits than are read back from it")
+
+    def read_back(self, name):
+        work = f"{tools.WORK}/{name}"
+        self.root.run("ecpunpack", "--input", f"{work}/{TOP}.bit", "--textcfg", f"{work}/read_back.config")
+        return (self.root.work / name / "read_back.config").read_text(encoding="utf-8")
 
     def pulls(self, name, pins):
         """Pull of each pin in the bitstream. What is unpacked does not name a pull whose bits are all 0: DOWN."""
-        self.root.run("ecpunpack", "--input", f"{tools.WORK}/{name}/{TOP}.bit", "--textcfg", f"{tools.WORK}/{name}/read_back.config")
-        text = (self.root.work / name / "read_back.config").read_text(encoding="utf-8")
+        text = self.read_back(name)
         places = json.loads((self.database / "iodb.json").read_text(encoding="utf-8"))["packages"]["CABGA381"]
         found = {}
         for port, (pin, _) in pins.items():

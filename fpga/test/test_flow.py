@@ -97,6 +97,32 @@ def test_pull_of_an_ice40_pin_is_a_bit_of_another_tile_that_switches_it_off(tmp_
         pads.pull_of("35", tiles)
 
 
+class Packer:
+    """ecppack and ecpunpack, of which the second gives this text back."""
+
+    def __init__(self, folder, read_back):
+        self.work, self.read_back = folder, read_back
+        (folder / "board").mkdir()
+        (folder / "board" / "routed.config").write_text(".device A\n\n.sysconfig COMPRESS_CONFIG ON\n.tile B\nenum: C ON\n")
+
+    def run(self, command, *arguments):
+        source, target = (self.work / "board" / Path(arguments[index]).name for index in (1, 3))
+        lines = self.read_back if command == "ecpunpack" else "".join(sorted(source.read_text().split("\n")))
+        target.write_text(lines)
+
+
+@pytest.mark.parametrize("read_back, whole", [(".device A\n.tile B\nenum: C ON\n", True), (".device A\n.tile B\n", False)])
+def test_bit_that_is_not_read_back_from_an_ecp5_ends_the_build(tmp_path, monkeypatch, read_back, whole):
+    monkeypatch.setattr(tools, "root_of", lambda suite: tools.Root(suite))
+    family = build.Ecp5({"part": "LFE5U-25F"})
+    family.root = Packer(tmp_path, read_back)
+    if whole:
+        family.pack("board")
+    else:
+        with pytest.raises(tools.Failed, match="read back"):
+            family.pack("board")
+
+
 def test_linux_gets_words_with_the_low_byte_first():
     header, sync = b"\x00\x09head" + b"\xff" * 8, bytes.fromhex("000000bb11220044aa995566")
     assert build.swapped(header + sync) == b"\xff" * 8 + bytes.fromhex("bb00000044002211665599aa")
