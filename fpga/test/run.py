@@ -356,7 +356,9 @@ def main():
                                     *(str(file) for file in [*sources(RTL), HARNESS])])
     if options.update_drawings:
         os.environ["BENCH_UPDATE"] = "1"
-    benches = [bench for bench in BENCHES + DRAWINGS if options.only in bench.name]
+    # What is replayed on the netlists comes from benches
+    benches = [bench for bench in BENCHES + DRAWINGS if options.only in bench.name
+               or (options.only in "netlists" and bench.name in mapped.REPLAYED)]
     if benches:
         runner = build(RTL, BUILD / "design", BUILD / "build.log")
         for bench in benches:
