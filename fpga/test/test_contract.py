@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""The bytes that the C++ driver sends, recorded by its unit test, give the sweep they were meant to give; so do the
-commands of the README, and those of doc/wiring.md for a driver that takes a code in one write."""
+"""The bytes that the C++ driver sends, recorded by its unit test for each lens driver, give the sweep they were meant to
+give; so do the commands of the README, and those of doc/wiring.md for a driver that takes a code in one write."""
 
 import random
 import re
@@ -18,34 +18,48 @@ SWEEPS = 3
 TEST = Path(__file__).resolve().parent
 
 
-def code(volts):
-    """MAX14574: 10 bits over 24.4 to 69.9 V."""
-    return int((float(volts) - 24.4) / 45.5 * 1023 + 0.5)
+# What a code of the table is for what the driver is told: MAX14574, 10 bits over 24.4 to 69.9 V; MAX14515, its own 8 bits
+CODES = {"MAX14574": lambda volts: int((float(volts) - 24.4) / 45.5 * 1023 + 0.5),
+         "MAX14515": lambda code: 4 * int(code)}
 
 
-def recording():
-    """(the table that was meant, the lines to play)."""
-    table, planes, lines = None, [], []
+def recording(driver):
+    """Of the part for this driver: (the table that was meant, the lines to play)."""
+    table, planes, lines, chosen = None, [], [], False
     for line in (TEST / "contract.txt").read_text(encoding="utf-8").splitlines():
         kind, *rest = line.split()
         fields = dict(item.split("=") for item in rest if "=" in item)
+        if kind == "table":
+            chosen = fields.pop("driver") == driver
+        if not chosen:
+            continue
         if kind == "table":
             times = {name: int(value) for name, value in fields.items()}
             table = dict(period_us=times["period"], exposure_us=times["exposure"], flyback_us=times["flyback"],
                          trigger_width_us=times["width"], opto_on_us=times["opto_on"], opto_off_us=times["opto_off"])
         elif kind == "plane":
-            planes.append(Plane(code(fields["volts_a"]), int(fields["delay"]), code(fields["volts_b"]),
+            planes.append(Plane(CODES[driver](fields["a"]), int(fields["delay"]), CODES[driver](fields["b"]),
                                 int(fields["settle"])))
-        elif kind != "#":
+        else:
             lines.append((kind, rest))
     return Table(planes, **table), lines
 
 
 @cocotb.test()
 async def recorded_driver_gives_the_sweep_it_meant(dut):
-    bench = Bench(dut)
+    await play_recording(Bench(dut), "MAX14574")
+
+
+@cocotb.test()
+async def recorded_driver_sweeps_a_max14515(dut):
+    bench = Bench(dut, Max14515)
+    await play_recording(bench, "MAX14515")
+    assert (Max14515.POWER_MODE, Max14515.ON) in {(register, value) for _, register, value in bench.lens.writes}
+
+
+async def play_recording(bench, driver):
     await bench.reset()
-    table, lines = recording()
+    table, lines = recording(driver)
     seen = []
     for kind, rest in lines:
         if kind == "write":
@@ -54,7 +68,7 @@ async def recorded_driver_gives_the_sweep_it_meant(dut):
             low, high = await bench.host.read_bytes(int(rest[0], 16), 2)
             check_read(bench, int(rest[0], 16), high << 8 | low)
         else:
-            await expectation(bench, table, " ".join(rest))
+            await expectation(bench, table, " ".join(rest), driver == "MAX14515")
             seen.append(" ".join(rest))
     assert seen == ["rest", "sweeps", "rest", "sweeps with run", "rest"], "the recording is not whole"
 
@@ -69,7 +83,7 @@ def check_read(bench, word, value):
         assert begun - 1 <= value <= begun, "the sweep goes on while the word is read"
 
 
-async def expectation(bench, table, what):
+async def expectation(bench, table, what, direct):
     if what == "rest":
         await bench.until(bench.dut.busy, 0, 2_000)
         for record in (bench.triggers, bench.lens.codes):
@@ -85,7 +99,7 @@ async def expectation(bench, table, what):
     await bench.until_triggers(SWEEPS * len(table.planes), SWEEPS * 5_000)
     await bench.wait_us(150)
     older, bench.syncs[:] = bench.syncs[:syncs], bench.syncs[syncs:]
-    bench.check(table, expect(table, SWEEPS, TICK_CYCLES, BIT_CYCLES))
+    bench.check(table, expect(table, SWEEPS, TICK_CYCLES, BIT_CYCLES, direct))
     bench.syncs[:] = older + bench.syncs
 
 

@@ -28,6 +28,7 @@ FpgaLens::FpgaLens(I2cBus &bus) : bus_(bus)
         throw I2cError("the sweep sequencer has register map " + std::to_string(version_major.get(version)) +
                        ", this driver knows " + std::to_string(version_major.get(version_default)));
     }
+    knows_direct_ = version_minor.get(version) >= 1;
     timing_ = {std::chrono::microseconds{read(Word::lens_gap_us)},
                std::chrono::microseconds{read(Word::lens_stage_us)}};
 }
@@ -72,6 +73,10 @@ void FpgaLens::write(const RegisterWrite &write)
 void FpgaLens::load(const SweepTable &table)
 {
     check(table, timing_);
+    if (table.driver->direct() && !knows_direct_) {
+        throw I2cError("the sweep sequencer has register map 1.0, and a " + std::string(table.driver->name) +
+                       " needs 1.1: load a newer bitstream");
+    }
     for (const auto &block : register_writes(table)) {
         write(block);
     }

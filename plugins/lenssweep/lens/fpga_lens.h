@@ -39,8 +39,9 @@ public:
     /* Times of the code writes in this build. */
     LensTiming timing() const { return timing_; }
 
-    /* Puts a table in use: at once, or when the sweep that runs ends. Throws std::invalid_argument for a
-     * table that cannot be met, before anything is written. */
+    /* Puts a table in use: at once, or when the sweep that runs ends. Before anything is written it throws
+     * std::invalid_argument for a table that cannot be met, and I2cError for a driver that this build of the
+     * sequencer does not know. */
     void load(const SweepTable &table);
 
     /* Starts the sweep with plane 0, after clearing old errors; gated: only while the run line is high. */
@@ -70,6 +71,7 @@ private:
 
     I2cBus &bus_;
     LensTiming timing_{};
+    bool knows_direct_ = false; /* `lens_address.direct` is of register map 1.1 */
 };
 
 /* What the bits of the word `error` mean, for a message to the user; empty for 0. */

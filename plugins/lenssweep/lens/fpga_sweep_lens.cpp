@@ -9,12 +9,13 @@ namespace dff {
 std::vector<PlaneStep> plane_steps(const SweepPlan &plan, const LensProfile &profile)
 {
     std::vector<PlaneStep> steps;
-    double before = profile.volts(plan.far()); /* plane 0 comes after the last one */
+    const LensDriver &driver = driver_of(profile);
+    double before = profile.drive(plan.far()); /* plane 0 comes after the last one */
     for (unsigned plane = 0; plane < plan.planes(); ++plane) {
-        const double hold = profile.volts(plan.power(plane));
+        const double hold = profile.drive(plan.power(plane));
         const double beyond = hold + profile.overdrive() * (hold - before);
-        steps.push_back({std::clamp(beyond, max14574_lowest_volts, max14574_highest_volts),
-                         profile.overdrive_delay(), hold, profile.settle()});
+        steps.push_back({std::clamp(beyond, driver.lowest, driver.highest), profile.overdrive_delay(), hold,
+                         profile.settle()});
         before = hold;
     }
     return steps;
@@ -28,6 +29,7 @@ FpgaSweepLens::FpgaSweepLens(std::unique_ptr<I2cBus> bus, LensProfile profile)
 void FpgaSweepLens::prepare(const LensSweep &sweep)
 {
     SweepTable table;
+    table.driver = &driver_of(profile_);
     table.planes = plane_steps(sweep.plan, profile_);
     table.period = sweep.period;
     const auto needed = sequencer_.timing().gap + profile_.overdrive_delay();
@@ -56,7 +58,7 @@ void FpgaSweepLens::stop()
 
 int FpgaSweepLens::code(unsigned plane) const
 {
-    return max14574_code(steps_.at(plane).hold_volts);
+    return driver_of(profile_).code(steps_.at(plane).hold);
 }
 
 void FpgaSweepLens::check()

@@ -36,7 +36,7 @@ private:
     bool gated_ = false;
 };
 
-/* What the lens is told for each plane of a plan: the profile's voltages, and before each a first code that
+/* What the lens is told for each plane of a plan: what the profile says, and before each a first code that
  * goes beyond it by the profile's overdrive, as far as the driver can. Throws std::invalid_argument. */
 std::vector<PlaneStep> plane_steps(const SweepPlan &plan, const LensProfile &profile);
 

@@ -4,9 +4,10 @@
 
 #include "i2c_retry.h"
 #include "interruptible_sleep.h"
-#include "sweep_table.h"
+#include "lens_driver.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace dff {
 
@@ -22,6 +23,10 @@ constexpr std::chrono::milliseconds wake_time{50};
 Max14574Lens::Max14574Lens(std::unique_ptr<I2cBus> bus, LensProfile profile)
     : bus_(std::move(bus)), profile_(std::move(profile))
 {
+    if (profile_.driver() != LensDriverKind::Max14574) {
+        throw std::invalid_argument("the profile of the lens " + profile_.lens() +
+                                    " is for another driver than the MAX14574");
+    }
     with_retries([this] { bus_->read_byte(static_cast<std::uint8_t>(Register::Status)); }, [] {});
 }
 
@@ -47,7 +52,7 @@ void Max14574Lens::prepare(const LensSweep &sweep)
 {
     std::vector<std::uint16_t> codes;
     for (unsigned plane = 0; plane < sweep.plan.planes(); ++plane) {
-        codes.push_back(max14574_code(profile_.volts(sweep.plan.power(plane))));
+        codes.push_back(max14574_driver.code(profile_.drive(sweep.plan.power(plane))));
     }
     codes_ = std::move(codes);
 }

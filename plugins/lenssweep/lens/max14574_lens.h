@@ -17,7 +17,7 @@ namespace dff {
  * voltage at the lens. */
 class Max14574Lens : public SteppedLens {
 public:
-    /* Throws I2cError if nothing answers. */
+    /* Throws I2cError if nothing answers, std::invalid_argument for a profile of another driver. */
     Max14574Lens(std::unique_ptr<I2cBus> bus, LensProfile profile);
     ~Max14574Lens() override;
 

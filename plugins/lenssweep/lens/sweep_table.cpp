@@ -3,7 +3,6 @@
 #include "sweep_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -15,7 +14,6 @@ namespace {
 using std::chrono::microseconds;
 using sweep_registers::Word;
 
-constexpr int highest_code = 1023;
 constexpr std::size_t fewest_planes = 2;
 constexpr std::size_t most_planes = 64;
 
@@ -43,14 +41,6 @@ std::uint16_t word(microseconds time)
 }
 
 } // namespace
-
-std::uint16_t max14574_code(double volts)
-{
-    require(volts >= max14574_lowest_volts && volts <= max14574_highest_volts,
-            std::to_string(volts) + " V is outside of the 24.4 to 69.9 V of the lens driver");
-    return static_cast<std::uint16_t>(std::lround(
-        (volts - max14574_lowest_volts) / (max14574_highest_volts - max14574_lowest_volts) * highest_code));
-}
 
 void check(const SweepTable &table, const LensTiming &timing)
 {
@@ -81,8 +71,8 @@ void check(const SweepTable &table, const LensTiming &timing)
         const auto needed = timing.gap + plane.delay + std::max(plane.settle, lead);
         require(needed <= gap, name + " needs " + text(needed) +
                                    " between two exposures, and period - exposure is " + text(gap));
-        max14574_code(plane.overdrive_volts);
-        max14574_code(plane.hold_volts);
+        table.driver->code(plane.overdrive);
+        table.driver->code(plane.hold);
     }
 }
 
@@ -91,16 +81,18 @@ std::vector<RegisterWrite> register_writes(const SweepTable &table)
     const auto shape =
         static_cast<std::uint16_t>(sweep_registers::shape_triangle.place(table.triangle) |
                                    sweep_registers::shape_trigger_active_low.place(table.trigger_active_low));
+    const auto &driver = *table.driver;
     /* In the order of the words, so that one block carries them */
     std::vector<RegisterWrite> writes{
         {Word::planes,
          {static_cast<std::uint16_t>(table.planes.size()), shape, word(table.period), word(table.exposure),
           word(table.flyback), word(table.trigger_width), word(table.opto_on), word(table.opto_off)}}};
+    writes.front().values.insert(writes.front().values.end(), driver.words.begin(), driver.words.end());
     for (std::size_t index = 0; index < table.planes.size(); ++index) {
         const PlaneStep &plane = table.planes[index];
         writes.push_back({Word::plane_select,
-                          {static_cast<std::uint16_t>(index), max14574_code(plane.overdrive_volts),
-                           word(plane.delay), max14574_code(plane.hold_volts), word(plane.settle)}});
+                          {static_cast<std::uint16_t>(index), driver.table_code(plane.overdrive),
+                           word(plane.delay), driver.table_code(plane.hold), word(plane.settle)}});
     }
     return writes;
 }

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
+#include "lens_driver.h"
 #include "sweep_registers.h"
 
 #include <chrono>
@@ -10,16 +11,17 @@
 
 namespace dff {
 
-/* What the lens is told for one plane: an overdrive, and the voltage that is held. */
+/* What the lens is told for one plane: an overdrive, and what is held. */
 struct PlaneStep {
-    double overdrive_volts = 0;         /* code A, V rms */
+    double overdrive = 0;               /* code A, as the driver is told: V rms, or its code */
     std::chrono::microseconds delay{};  /* from code A to the staging of code B */
-    double hold_volts = 0;              /* code B, V rms */
+    double hold = 0;                    /* code B */
     std::chrono::microseconds settle{}; /* from code B to the exposure, at least */
 };
 
 /* A sweep in physical units, nearest plane first. */
 struct SweepTable {
+    const LensDriver *driver = &max14574_driver;
     std::vector<PlaneStep> planes;
     std::chrono::microseconds period{6400};
     std::chrono::microseconds exposure{6000};
@@ -42,14 +44,6 @@ struct RegisterWrite {
     sweep_registers::Word word;
     std::vector<std::uint16_t> values;
 };
-
-/* V rms of codes 0 and 1023 of the MAX14574. */
-constexpr double max14574_lowest_volts = 24.4;
-constexpr double max14574_highest_volts = 69.9;
-
-/* Code of the MAX14574 for a voltage: 10 bits over 24.4 to 69.9 V rms. Throws std::invalid_argument outside
- * of them. */
-std::uint16_t max14574_code(double volts);
 
 /* Throws std::invalid_argument, with the rule in its text, for a table that the sequencer would refuse. */
 void check(const SweepTable &table, const LensTiming &timing);

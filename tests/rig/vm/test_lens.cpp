@@ -24,9 +24,9 @@ uint8_t number(Word word)
     return static_cast<uint8_t>(word);
 }
 
-std::unique_ptr<dff::Lens> open(const std::string &uri)
+std::unique_ptr<dff::Lens> open(const std::string &uri, const std::string &profile = "")
 {
-    auto lens = dff::open_lens(dff::LensUri::parse(uri), {});
+    auto lens = dff::open_lens(dff::LensUri::parse(uri), {profile});
     rig::empty_i2c_log();
     return lens;
 }
@@ -61,6 +61,27 @@ TEST(Sequencer, table_is_written_and_reads_back)
     const Log log = rig::i2c_log();
     EXPECT_NE(std::find(log.begin(), log.end(), "3c 0c=0001"), log.end()) << "not committed";
     EXPECT_GT(lens->code(0), lens->code(5));
+}
+
+TEST(Sequencer, profile_says_which_driver_is_on_its_bus)
+{
+    const std::string profile = "/tmp/max14515.yaml";
+    std::ofstream(profile)
+        << "%YAML:1.0\n---\nlens: test\nnominal: 1\npower_at_infinity: 0\nlens_power: [ 0, 10 ]\n"
+           "driver: MAX14515\ncodes: [ 40, 200 ]\nsettle_us: 100\n";
+    const auto in_codes = open("fpga:" + rig::i2c_bus(), profile);
+    in_codes->prepare({dff::SweepPlan::even(3, 10.0, 0.0), 6400us, 6000us, true});
+
+    dff::LinuxI2cBus bus(rig::i2c_bus(), 0x3c);
+    EXPECT_EQ(bus.read_word(number(Word::lens_address)),
+              0x76 | dff::sweep_registers::lens_address_direct.mask());
+    bus.write_word(number(Word::plane_select), 1);
+    EXPECT_EQ(bus.read_word(number(Word::plane_code_b)), 4 * 120); /* the middle of 40 and 200 */
+    EXPECT_EQ(in_codes->code(1), 120);
+
+    const auto in_volts = open("fpga:" + rig::i2c_bus());
+    in_volts->prepare({dff::SweepPlan::even(3, 10.0, 0.0), 6400us, 6000us, true});
+    EXPECT_EQ(bus.read_word(number(Word::lens_address)), dff::sweep_registers::lens_address_default);
 }
 
 TEST(Sequencer, is_started_behind_its_run_line_and_stopped_when_it_is_let_go)

@@ -3,6 +3,7 @@
 #include "fpga_lens.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -90,43 +91,47 @@ dff::SweepTable contract_table()
     return table;
 }
 
+/* The same in the codes of a MAX14515. */
+dff::SweepTable contract_table_in_codes()
+{
+    auto table = contract_table();
+    table.driver = &dff::max14515_driver;
+    for (auto &plane : table.planes) {
+        plane.overdrive = std::round(plane.overdrive) * 3;
+        plane.hold = std::round(plane.hold) * 3 + 1;
+    }
+    return table;
+}
+
 std::string describe(const dff::SweepTable &table)
 {
     std::ostringstream text;
-    text << "table period=" << table.period.count() << " exposure=" << table.exposure.count()
-         << " flyback=" << table.flyback.count() << " width=" << table.trigger_width.count()
-         << " opto_on=" << table.opto_on.count() << " opto_off=" << table.opto_off.count() << "\n";
+    text << "table driver=" << table.driver->name << " period=" << table.period.count()
+         << " exposure=" << table.exposure.count() << " flyback=" << table.flyback.count()
+         << " width=" << table.trigger_width.count() << " opto_on=" << table.opto_on.count()
+         << " opto_off=" << table.opto_off.count() << "\n";
     for (const auto &plane : table.planes) {
-        text << "plane volts_a=" << plane.overdrive_volts << " delay=" << plane.delay.count()
-             << " volts_b=" << plane.hold_volts << " settle=" << plane.settle.count() << "\n";
+        text << "plane a=" << plane.overdrive << " delay=" << plane.delay.count() << " b=" << plane.hold
+             << " settle=" << plane.settle.count() << "\n";
     }
     return text.str();
 }
 
-bool has(const RecordingBus &bus, const std::string &transfer)
-{
-    return std::find(bus.transfers.begin(), bus.transfers.end(), transfer) != bus.transfers.end();
-}
-
-} // namespace
-
-TEST(FpgaLens, bytes_on_the_bus_are_those_the_simulated_sequencer_is_tried_with)
+/* All that a driver may send for a table, and what the sequencer is to do of it. */
+std::string recorded(const dff::SweepTable &table)
 {
     RecordingBus bus;
-    std::ostringstream recording;
-    recording << "# Recorded by tests/unit/lens/test_fpga_lens.cpp: set UPDATE_CONTRACT=1 to write it anew.\n"
-              << "# fpga/test/test_contract.py plays it to the simulated sequencer.\n"
-              << describe(contract_table());
+    std::string recording = describe(table);
     const auto flush = [&](const std::string &expectation) {
         for (const auto &transfer : bus.transfers) {
-            recording << transfer << "\n";
+            recording += transfer + "\n";
         }
         bus.transfers.clear();
-        recording << "expect " << expectation << "\n";
+        recording += "expect " + expectation + "\n";
     };
     {
         dff::FpgaLens lens(bus);
-        lens.load(contract_table());
+        lens.load(table);
         flush("rest");
         lens.start(false);
         flush("sweeps");
@@ -139,13 +144,28 @@ TEST(FpgaLens, bytes_on_the_bus_are_those_the_simulated_sequencer_is_tried_with)
         flush("sweeps with run");
     }
     flush("rest");
+    return recording;
+}
 
+bool has(const RecordingBus &bus, const std::string &transfer)
+{
+    return std::find(bus.transfers.begin(), bus.transfers.end(), transfer) != bus.transfers.end();
+}
+
+} // namespace
+
+TEST(FpgaLens, bytes_on_the_bus_are_those_the_simulated_sequencer_is_tried_with)
+{
+    const std::string recording =
+        "# Recorded by tests/unit/lens/test_fpga_lens.cpp: set UPDATE_CONTRACT=1 to write it anew.\n"
+        "# fpga/test/test_contract.py plays it to the simulated sequencer.\n" +
+        recorded(contract_table()) + recorded(contract_table_in_codes());
     if (std::getenv("UPDATE_CONTRACT")) {
-        std::ofstream(CONTRACT) << recording.str();
+        std::ofstream(CONTRACT) << recording;
     }
     std::stringstream committed;
     committed << std::ifstream(CONTRACT).rdbuf();
-    EXPECT_EQ(recording.str(), committed.str());
+    EXPECT_EQ(recording, committed.str());
 }
 
 TEST(FpgaLens, another_device_at_the_address_is_refused)

@@ -4,8 +4,11 @@
 
 #include "fake_i2c_bus.h"
 
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <thread>
+#include <unistd.h>
 
 using namespace std::chrono_literals;
 
@@ -29,6 +32,19 @@ protected:
 };
 
 } // namespace
+
+TEST_F(Max14574, profile_of_another_driver_is_refused)
+{
+    const auto path =
+        std::filesystem::temp_directory_path() / ("dff-codes-" + std::to_string(getpid()) + ".yaml");
+    std::ofstream(path)
+        << "%YAML:1.0\n---\nlens: test\nnominal: 1\npower_at_infinity: 0\nlens_power: [ 0, 10 ]\n"
+           "driver: MAX14515\ncodes: [ 40, 200 ]\nsettle_us: 100\n";
+    const auto profile = dff::LensProfile::load(path);
+    std::filesystem::remove(path);
+    EXPECT_THROW(dff::Max14574Lens(std::make_unique<FakeI2cBus>(bus_), profile), std::invalid_argument);
+    EXPECT_TRUE(bus_.transfers.empty());
+}
 
 TEST_F(Max14574, a_code_is_staged_in_two_registers_and_committed)
 {

@@ -29,11 +29,21 @@ TEST(SweepTable, paper_sweep_fits_to_the_microsecond)
 
 TEST(SweepTable, volts_become_codes_over_the_whole_range)
 {
-    EXPECT_EQ(dff::max14574_code(24.4), 0);
-    EXPECT_EQ(dff::max14574_code(69.9), 1023);
-    EXPECT_EQ(dff::max14574_code(47.2), 513);
-    EXPECT_THROW(dff::max14574_code(24.3), std::invalid_argument);
-    EXPECT_THROW(dff::max14574_code(70.0), std::invalid_argument);
+    EXPECT_EQ(dff::max14574_driver.code(24.4), 0);
+    EXPECT_EQ(dff::max14574_driver.code(69.9), 1023);
+    EXPECT_EQ(dff::max14574_driver.code(47.2), 513);
+    EXPECT_THROW(dff::max14574_driver.code(24.3), std::invalid_argument);
+    EXPECT_THROW(dff::max14574_driver.code(70.0), std::invalid_argument);
+}
+
+TEST(SweepTable, codes_of_a_max14515_are_the_high_bits_of_the_sequencers)
+{
+    EXPECT_EQ(dff::max14515_driver.code(0), 0);
+    EXPECT_EQ(dff::max14515_driver.code(127.6), 128);
+    EXPECT_EQ(dff::max14515_driver.code(255), 255);
+    EXPECT_EQ(dff::max14515_driver.table_code(255), 1020);
+    EXPECT_THROW(dff::max14515_driver.code(-0.1), std::invalid_argument);
+    EXPECT_THROW(dff::max14515_driver.code(255.1), std::invalid_argument);
 }
 
 TEST(SweepTable, what_the_sequencer_would_refuse_is_refused_here)
@@ -53,7 +63,8 @@ TEST(SweepTable, what_the_sequencer_would_refuse_is_refused_here)
     refused([](auto &table) { table.opto_off = 100us; });
     refused([](auto &table) { table.opto_on = 101us; });
     refused([](auto &table) { table.planes[5].delay = 10us; });
-    refused([](auto &table) { table.planes[0].hold_volts = 0; });
+    refused([](auto &table) { table.planes[0].hold = 0; });
+    refused([](auto &table) { table.planes[0].overdrive = 256, table.driver = &dff::max14515_driver; });
     refused([](auto &table) { table.planes[0].settle = -1us; });
     refused([](auto &table) { table.flyback = -1us; });
 }
@@ -76,7 +87,19 @@ TEST(SweepTable, settings_stand_in_one_block_and_each_plane_in_another)
     const auto writes = dff::register_writes(table);
     ASSERT_EQ(writes.size(), 7u);
     EXPECT_EQ(writes[0].word, dff::sweep_registers::Word::planes);
-    EXPECT_EQ(writes[0].values, (std::vector<std::uint16_t>{6, 1, 6400, 6000, 0, 100, 0, 0}));
+    EXPECT_EQ(writes[0].values,
+              (std::vector<std::uint16_t>{6, 1, 6400, 6000, 0, 100, 0, 0, 0x0077, 0x0303, 0x0804, 0x0209}));
     EXPECT_EQ(writes[2].word, dff::sweep_registers::Word::plane_select);
     EXPECT_EQ(writes[2].values, (std::vector<std::uint16_t>{1, 351, 9, 463, 100}));
+}
+
+TEST(SweepTable, words_of_the_driver_go_with_its_codes)
+{
+    auto table = paper_table();
+    table.driver = &dff::max14515_driver;
+    const auto writes = dff::register_writes(table);
+    /* direct, 0x76; register 0 = 1 wakes it; register 1 takes the code; nothing commits it */
+    EXPECT_EQ(writes[0].values,
+              (std::vector<std::uint16_t>{6, 0, 6400, 6000, 0, 100, 0, 0, 0x00f6, 0x0100, 0x0100, 0x0000}));
+    EXPECT_EQ(writes[2].values, (std::vector<std::uint16_t>{1, 160, 9, 180, 100}));
 }

@@ -55,11 +55,11 @@ TEST(LensProfile, volts_lie_on_straight_lines_between_the_given_ones)
     EXPECT_FALSE(profile.nominal());
     EXPECT_DOUBLE_EQ(profile.farthest(), -1.0);
     EXPECT_DOUBLE_EQ(profile.nearest(), 5.0);
-    EXPECT_DOUBLE_EQ(profile.volts(-1.0), 30.0);
-    EXPECT_DOUBLE_EQ(profile.volts(0.0), 35.0);
-    EXPECT_DOUBLE_EQ(profile.volts(1.0), 40.0);
-    EXPECT_DOUBLE_EQ(profile.volts(4.0), 47.5);
-    EXPECT_DOUBLE_EQ(profile.volts(5.0), 50.0);
+    EXPECT_DOUBLE_EQ(profile.drive(-1.0), 30.0);
+    EXPECT_DOUBLE_EQ(profile.drive(0.0), 35.0);
+    EXPECT_DOUBLE_EQ(profile.drive(1.0), 40.0);
+    EXPECT_DOUBLE_EQ(profile.drive(4.0), 47.5);
+    EXPECT_DOUBLE_EQ(profile.drive(5.0), 50.0);
     EXPECT_EQ(profile.settle().count(), 1500);
     EXPECT_EQ(profile.overdrive(), 0.0);
     EXPECT_EQ(profile.overdrive_delay().count(), 0);
@@ -69,7 +69,7 @@ TEST(LensProfile, nearer_always_takes_more_volts)
 {
     const auto profile = dff::LensProfile::load(ProfileFile(good).path());
     for (double vergence = -1.0; vergence < 4.99; vergence += 0.01) {
-        EXPECT_LT(profile.volts(vergence), profile.volts(vergence + 0.01));
+        EXPECT_LT(profile.drive(vergence), profile.drive(vergence + 0.01));
     }
 }
 
@@ -78,7 +78,7 @@ TEST(LensProfile, vergence_that_the_lens_does_not_reach_is_an_error_with_the_ran
     const auto profile = dff::LensProfile::load(ProfileFile(good).path());
     for (const double vergence : {-1.1, 5.1, 1e9}) {
         try {
-            profile.volts(vergence);
+            profile.drive(vergence);
             ADD_FAILURE() << vergence;
         } catch (const std::invalid_argument &error) {
             EXPECT_NE(std::string(error.what()).find("reaches -1 to 5 dioptres"), std::string::npos)
@@ -112,12 +112,31 @@ TEST(LensProfile, faults_of_a_file_are_told_with_its_name)
     EXPECT_THROW(dff::LensProfile::load("/"), std::invalid_argument);
 }
 
+TEST(LensProfile, a_max14515_is_told_codes)
+{
+    EXPECT_EQ(dff::LensProfile::load(ProfileFile(good).path()).driver(), dff::LensDriverKind::Max14574);
+    EXPECT_EQ(dff::LensProfile::load(ProfileFile(good + "driver: \"MAX14574\"\n").path()).driver(),
+              dff::LensDriverKind::Max14574);
+    const auto codes =
+        with(good + "driver: \"MAX14515\"\n", "volts: [ 30, 40.0, 50.0 ]", "codes: [ 0, 100, 255 ]");
+    const auto profile = dff::LensProfile::load(ProfileFile(codes).path());
+    EXPECT_EQ(profile.driver(), dff::LensDriverKind::Max14515);
+    EXPECT_DOUBLE_EQ(profile.drive(0.0), 50.0);
+    EXPECT_DOUBLE_EQ(profile.drive(5.0), 255.0);
+    EXPECT_NE(fault_of(with(codes, "255", "256")).find("codes[2] is 256 and must be 0 to 255"),
+              std::string::npos);
+    EXPECT_NE(fault_of(good + "driver: \"MAX14515\"\n").find("codes must be a list"), std::string::npos);
+    EXPECT_NE(
+        fault_of(good + "driver: \"HV892\"\n").find("driver is \"HV892\" and must be MAX14574 or MAX14515"),
+        std::string::npos);
+}
+
 TEST(LensProfile, the_shipped_one_is_nominal_and_within_what_the_driver_can)
 {
     const auto profile = dff::LensProfile::load(SHIPPED_PROFILE);
     EXPECT_TRUE(profile.nominal());
-    EXPECT_GE(profile.volts(profile.farthest()), 24.4);
-    EXPECT_LE(profile.volts(profile.nearest()), 69.9);
+    EXPECT_GE(profile.drive(profile.farthest()), 24.4);
+    EXPECT_LE(profile.drive(profile.nearest()), 69.9);
     EXPECT_LE(profile.farthest(), 0.0);
     EXPECT_GE(profile.nearest(), 5.0);
 }

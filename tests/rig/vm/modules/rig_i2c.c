@@ -30,7 +30,7 @@ static int nack;
 module_param(nack, int, 0644);
 
 static DEFINE_MUTEX(lock); /* guards all below */
-static u16 words[WORDS] = {[0x00] = 0xdff5, [0x01] = 0x0100, [0x0a] = 291, [0x0b] = 146};
+static u16 words[WORDS] = {[0x00] = 0xdff5, [0x01] = 0x0101, [0x0a] = 291, [0x0b] = 146};
 static u16 rows[64][ROW_WORDS];
 static u8 bytes[256];
 static char log_text[LOG_BYTES];
