@@ -224,6 +224,20 @@ async def table_rewritten_in_mid_sweep_takes_effect_between_sweeps(dut):
 
 
 @cocotb.test()
+async def triangle_that_comes_in_use_begins_where_its_own_table_ends(dut):
+    bench = Bench(dut)
+    sawtooth, triangle = short_table(2), short_table(5, triangle=True)
+    triangle.planes = [Plane(800 + number, 10, 900 + number, 30) for number in range(5)]
+    await started(bench, sawtooth)
+    await bench.until_triggers(1, 6_000)
+    await triangle.write(bench.host)
+    await bench.until_triggers(len(bench.trigger_starts()) + 2 + 10, 16_000)
+    codes = [code for _, code in bench.lens.codes if code >= 900]
+    assert codes[:10] == [904, 903, 902, 901, 900, 900, 901, 902, 903, 904]
+    assert await bench.errors() == set()
+
+
+@cocotb.test()
 async def second_commit_replaces_the_one_that_waits(dut):
     bench = Bench(dut)
     await started(bench, short_table(3, period_us=3_000))
