@@ -102,6 +102,29 @@ async def host_traffic_does_not_move_a_trigger(dut):
 
 
 @cocotb.test()
+async def host_that_errs_is_refused_and_one_that_breaks_off_does_not_hold_the_bus(dut):
+    bench = Bench(dut)
+    await bench.reset()
+    host = bench.host
+    await host.start()
+    assert not await host.send(0x3D << 1), "the address of another slave"
+    await host.stop()
+    await host.start()
+    assert await host.send(host.address << 1) and await host.send(0x80 | WORD["planes"])
+    assert not await host.send(3), "a block with an odd count of bytes"
+    await host.stop()
+    await host.start()
+    assert await host.send(host.address << 1) and await host.send(WORD["version"])
+    await host.start()
+    assert await host.send(host.address << 1 | 1)
+    await bench.wait_us(20)
+    assert int(dut.host_sda.value) == 0, "the first bit of the word"
+    await bench.until(dut.host_sda, 1, 26_000)
+    await host.stop()
+    assert await host.read_word(WORD["version"]) == DEFAULT["version"]
+
+
+@cocotb.test()
 async def nack_stops_the_trigger(dut):
     bench = Bench(dut)
     table = short_table()
