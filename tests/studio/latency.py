@@ -3,7 +3,8 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 """How long light takes from the lens to a viewer of dff-studio, and what a second viewer costs; by hand:
 
-    meson devenv -C build unshare -n sh -c 'ip link set lo up && tests/studio/latency.py [--browser]'
+    meson devenv -C build                                                     # as root, and in its shell:
+    cd .. && unshare -n sh -c 'ip link set lo up && tests/studio/latency.py'  # or with --browser
 
 The simulated rig's light is switched between two sweeps. From the moment that the first exposure under the new light begins, it
 takes so long until the picture's mean brightness has changed by half, at a receiver by WebRTC that decodes it or, with --browser, on
