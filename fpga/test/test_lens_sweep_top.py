@@ -387,7 +387,8 @@ async def new_polarity_waits_for_standstill(dut):
     await started(bench, short_table())
     await bench.until_triggers(1, 6_000)
     await short_table(active_low=True).write(bench.host)
-    await bench.until_triggers(8, 8_000)
+    # Two sweeps, at whose ends the table would be exchanged
+    await bench.until_triggers(len(bench.trigger_starts()) + 6, 8_000)
     assert await bench.status("commit_pending")
     assert all(end - start == 50 * TICK_CYCLES * CLOCK_PS for start, end in pulses(bench.triggers, 1))
     await bench.control()
