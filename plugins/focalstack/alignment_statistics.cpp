@@ -38,9 +38,10 @@ GstStructure *to_structure(const PlaneAlignment &plane)
 
 } // namespace
 
-void AlignmentStatistics::add(std::vector<PlaneAlignment> planes)
+void AlignmentStatistics::add(std::vector<PlaneAlignment> planes, std::size_t bad_pixels)
 {
     stacks_++;
+    bad_pixels_ = bad_pixels;
     untrusted_planes_ += std::ranges::count(planes, false, &PlaneAlignment::trusted);
     planes_ = std::move(planes);
 }
@@ -56,9 +57,9 @@ GstStructure *AlignmentStatistics::to_structure() const
         gst_value_array_append_and_take_value(&planes, &value);
     }
 
-    GstStructure *structure =
-        gst_structure_new("application/x-focalstackalign-stats", "stacks", G_TYPE_UINT64, stacks_,
-                          "untrusted-planes", G_TYPE_UINT64, untrusted_planes_, nullptr);
+    GstStructure *structure = gst_structure_new(
+        "application/x-focalstackalign-stats", "stacks", G_TYPE_UINT64, stacks_, "untrusted-planes",
+        G_TYPE_UINT64, untrusted_planes_, "bad-pixels", G_TYPE_UINT64, bad_pixels_, nullptr);
     gst_structure_take_value(structure, "planes", &planes);
     return structure;
 }

@@ -14,8 +14,8 @@ namespace dff {
 /* What focalstackalign tells of the stacks so far. */
 class AlignmentStatistics {
 public:
-    /* Counts a stack, and keeps how its planes lay. */
-    void add(std::vector<PlaneAlignment> planes);
+    /* Counts a stack, and keeps how its planes lay and how many pixels of the sensor were bad. */
+    void add(std::vector<PlaneAlignment> planes, std::size_t bad_pixels);
 
     /* The property `stats`. */
     GstStructure *to_structure() const;
@@ -23,6 +23,7 @@ public:
 private:
     uint64_t stacks_ = 0;
     uint64_t untrusted_planes_ = 0;
+    uint64_t bad_pixels_ = 0;
     std::vector<PlaneAlignment> planes_;
 };
 

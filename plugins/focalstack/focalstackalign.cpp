@@ -27,6 +27,10 @@
  * and an offset a channel: lights flicker, and cameras meter each photograph anew. It takes a few
  * milliseconds for each megapixel of a stack.
  *
+ * Pixels of the sensor that are too bright or too dark in all planes of three sweeps, hot and dead ones,
+ * become the median of their neighbours before anything else: they stay where they are while the picture
+ * moves.
+ *
  * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
  * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.
  *
@@ -44,6 +48,7 @@
 #include "common/stack_noise.h"
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
+#include "focalstack/bad_pixels.h"
 #include "focalstack/brightness_evener.h"
 #include "focalstack/focalstackalign_properties.h"
 #include "focalstack/partial_stack.h"
@@ -66,6 +71,7 @@ struct FocalStackAlignState {
     bool told_untrusted = false;
     bool told_blank = false;
     std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
+    dff::BadPixels bad_pixels;
 
     /* Guarded by the object's lock. */
     dff::AlignSettings settings;
@@ -218,6 +224,7 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
         return FALSE;
     }
     GST_FOCAL_STACK_ALIGN(base)->state->pool.emplace(info);
+    GST_FOCAL_STACK_ALIGN(base)->state->bad_pixels.forget();
     return TRUE;
 }
 
@@ -262,6 +269,20 @@ gboolean transform_meta(GstBaseTransform *, GstBuffer *, GstMeta *, GstBuffer *)
     return TRUE;
 }
 
+/* Before anything else: what lies at the same place of all planes would hold them fast. */
+void leave_out_bad_pixels(dff::BadPixels &known, GstBuffer *stack, dff::StackPictures &pictures,
+                          unsigned planes)
+{
+    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
+    const guint64 absent = meta ? meta->missing | meta->repeated : 0;
+    std::vector<cv::Mat> taken;
+    for (unsigned z = 0; z < planes; z++)
+        if (!(absent >> z & 1))
+            taken.push_back(pictures.component(z, 0));
+    known.look(taken);
+    pictures.leave_out(known.places());
+}
+
 GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *output)
 {
     GstFocalStackAlign *self = GST_FOCAL_STACK_ALIGN(base);
@@ -282,6 +303,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
     }
     std::vector<dff::PlaneAlignment> alignments;
     try {
+        leave_out_bad_pixels(self->state->bad_pixels, input, *from, info.planes);
         alignments = find_alignments(self, *from, info.planes, settings);
         place_planes(*from, *to, alignments, settings.even_brightness);
     } catch (const cv::Exception &exception) {
@@ -296,7 +318,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
     tell_of_trust(self, alignments);
     {
         const ObjectLock lock(self);
-        self->state->statistics.add(std::move(alignments));
+        self->state->statistics.add(std::move(alignments), self->state->bad_pixels.places().size());
     }
     announce_latency(self, static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND);
     return GST_FLOW_OK;
@@ -364,6 +386,7 @@ gboolean start(GstBaseTransform *base)
     state->clock = {};
     state->told_untrusted = state->told_blank = false;
     state->statistics = {};
+    state->bad_pixels.forget();
     state->latency = 0;
     return TRUE;
 }
@@ -403,7 +426,8 @@ void install_properties(GObjectClass *object_class)
     /**
      * GstFocalStackAlign:stats:
      *
-     * "stacks" (uint64) were aligned, and in them "untrusted-planes" (uint64) could not be matched. "planes"
+     * "stacks" (uint64) were aligned, and in them "untrusted-planes" (uint64) could not be matched.
+     * "bad-pixels" (uint64) of the sensor are left out of the last one. "planes"
      * is an array with a structure for each plane of the last stack, nearest first, that says where the
      * picture of the middle plane lies in it: "dx" and "dy" (double), the shift of the centre in pixels,
      * right and down; "scale" (double), the zoom about the centre; "rotation" (double), degrees clockwise;
@@ -415,8 +439,8 @@ void install_properties(GObjectClass *object_class)
         object_class, property_stats,
         g_param_spec_boxed(
             "stats", "Statistics",
-            "Stacks aligned, planes not trusted, and for each plane of the last stack dx and dy "
-            "(pixels), scale, rotation (degrees), the matrix and whether they are trusted",
+            "Stacks aligned, planes not trusted, bad pixels, and for each plane of the last stack dx and "
+            "dy (pixels), scale, rotation (degrees), the matrix and whether they are trusted",
             GST_TYPE_STRUCTURE, static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 }
 

@@ -12,6 +12,10 @@
  * the noise of the sensor, as a curve over brightness that the element finds in the pictures themselves and
  * tells in `stats`. Planes that were lost or repeat another's picture are left as they are.
  *
+ * Pixels of the sensor that are too bright or too dark in all planes of three sweeps, hot and dead ones,
+ * become the median of their neighbours before anything else; they are found in sweeps of five planes or
+ * more.
+ *
  * The noise that is left goes with each stack whose planes have it alike, from the second one on: a
  * GstCustomMeta by the name GstFocalStackNoiseMeta, whose field "luma" (double) is the standard deviation of
  * luma where white is 255. dffdepth and aifcompose believe it.
@@ -36,6 +40,7 @@
 #include "focalstack/focalstackdenoise.h"
 
 #include "common/stack_noise.h"
+#include "focalstack/bad_pixels.h"
 #include "focalstack/sweep_follower.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
@@ -74,11 +79,13 @@ struct FocalStackDenoiseState {
     std::optional<GstFocalStackInfo> info;
     std::unique_ptr<dff::StackDenoiser> denoiser; /* for info; empty until the first stack of these caps */
     std::unique_ptr<dff::SweepFollower> follower; /* for info, while local-motion is wanted */
+    dff::BadPixels bad_pixels;
 
     std::mutex mutex; /* guards what follows; nothing is locked under it */
     dff::DenoiseParameters parameters;
     bool local_motion = false;
     double moved = 0.0; /* part of the last stack */
+    guint64 bad_pixel_count = 0;
     std::string device_wish;
     dff::DenoiseReport report;
     guint64 stacks = 0;
@@ -164,6 +171,7 @@ void account(GstFocalStackDenoise *self, dff::DenoiseReport report, GstClockTime
         const std::lock_guard lock(state.mutex);
         state.report = std::move(report);
         state.moved = state.follower ? state.follower->moved() : 0.0;
+        state.bad_pixel_count = state.bad_pixels.places().size();
         state.stacks++;
         is_slower = state.latency.add(compute_time, is_first);
     }
@@ -191,6 +199,21 @@ bool is_one_sweep(const dff::StackView &view)
     return std::all_of(planes.begin(), planes.end(), [&](const auto &plane) {
         return !plane || !planes.front() || plane->sweep == planes.front()->sweep;
     });
+}
+
+/* Before anything else: what is sharp in all planes has no depth. */
+void leave_out_bad_pixels(dff::BadPixels &known, const WritableStack &stack, guint64 absent)
+{
+    const auto pictures = dff::pictures_of(stack.view(), stack.memory());
+    const auto components = stack.view().shape.components();
+    std::vector<cv::Mat> taken;
+    for (size_t z = 0; z < pictures.size(); z++)
+        if (!(absent >> z & 1))
+            taken.push_back(pictures[z].front());
+    known.look(taken);
+    for (const auto &plane : pictures)
+        for (size_t c = 0; c < plane.size(); c++)
+            dff::repair_pixels(plane[c], known.places(), static_cast<int>(components[c].subsampling));
 }
 
 /* Nothing is followed in sweeps of few planes, through planes that do not show what they should, nor in
@@ -222,7 +245,11 @@ void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
         progress.emplace(GST_ELEMENT(self));
     ensure_denoiser(self);
     const guint64 absent = absent_planes(buffer);
-    denoise_stack(state, WritableStack(*state.info, buffer, *state.device), absent);
+    {
+        const WritableStack stack(*state.info, buffer, *state.device);
+        leave_out_bad_pixels(state.bad_pixels, stack, absent);
+        denoise_stack(state, stack, absent);
+    }
     dff::DenoiseReport report = state.denoiser->report();
     /* Planes that are noisier than the others would pass for sharper ones. */
     dff::tell_stack_noise(buffer, absent == 0 ? report.left : std::nullopt);
@@ -258,6 +285,7 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
     state.info = info;
     state.denoiser.reset();
     state.follower.reset();
+    state.bad_pixels.forget();
     return TRUE;
 }
 
@@ -300,6 +328,7 @@ gboolean start(GstBaseTransform *base)
         state.stacks = 0;
         state.report = {};
         state.moved = 0.0;
+        state.bad_pixel_count = 0;
         state.latency.reset();
     }
     try {
@@ -341,9 +370,10 @@ void set_noise(GstStructure *stats, const dff::DenoiseReport &report)
 GstStructure *statistics(FocalStackDenoiseState &state)
 {
     const std::lock_guard lock(state.mutex);
-    GstStructure *stats = gst_structure_new("application/x-focalstackdenoise-stats", "stacks", G_TYPE_UINT64,
-                                            state.stacks, "sweeps", G_TYPE_DOUBLE, state.report.mean_sweeps,
-                                            "moved", G_TYPE_DOUBLE, state.moved, nullptr);
+    GstStructure *stats =
+        gst_structure_new("application/x-focalstackdenoise-stats", "stacks", G_TYPE_UINT64, state.stacks,
+                          "sweeps", G_TYPE_DOUBLE, state.report.mean_sweeps, "moved", G_TYPE_DOUBLE,
+                          state.moved, "bad-pixels", G_TYPE_UINT64, state.bad_pixel_count, nullptr);
     if (state.report.left)
         gst_structure_set(stats, "noise-left", G_TYPE_DOUBLE, *state.report.left, nullptr);
     set_noise(stats, state.report);
@@ -443,13 +473,15 @@ void install_properties(GObjectClass *object_class)
      *
      * "stacks" (uint64) were denoised, or followed; in the last one, "sweeps" (double) were averaged, as a
      * mean over the picture, and "moved" (double, 0 to 1) is the part of it in which local-motion saw
-     * anything. "noise" is an array of 16 doubles: the standard deviation of the noise of a single frame at
-     * 16 brightnesses from black to white, in units of which white has 256.
+     * anything. "bad-pixels" (uint64) of the sensor are left out. "noise" is an array of 16 doubles: the
+     * standard deviation of the noise of a single frame at 16 brightnesses from black to white, in units of
+     * which white has 256.
      */
     g_object_class_install_property(
         object_class, PropertyStats,
         g_param_spec_boxed("stats", "Statistics",
-                           "Stacks denoised, sweeps averaged and part that moved in the last one, noise "
+                           "Stacks denoised, sweeps averaged and part that moved in the last one, bad "
+                           "pixels of the sensor, noise "
                            "(standard deviation, white is 256) at 16 brightnesses, and noise-left in luma",
                            GST_TYPE_STRUCTURE,
                            static_cast<GParamFlags>(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));

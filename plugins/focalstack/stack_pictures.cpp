@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/stack_pictures.h"
 
+#include "focalstack/bad_pixels.h"
+
 #include <algorithm>
 
 namespace dff {
@@ -67,8 +69,23 @@ int StackPictures::step(unsigned component) const
     return 1 << GST_VIDEO_FORMAT_INFO_W_SUB(info_.frame.finfo, channels(component).front());
 }
 
+void StackPictures::leave_out(std::span<const cv::Point> bad_pixels)
+{
+    if (bad_pixels.empty())
+        return;
+    std::vector<cv::Mat> copies;
+    for (unsigned z = 0; z < planes_.size(); z++)
+        for (unsigned i = 0; i < components(); i++) {
+            copies.push_back(component(z, i).clone());
+            repair_pixels(copies.back(), bad_pixels, step(i));
+        }
+    copies_ = std::move(copies);
+}
+
 cv::Mat StackPictures::component(unsigned plane, unsigned component) const
 {
+    if (!copies_.empty())
+        return copies_[plane * components() + component];
     const guint channel = channels(component).front();
     const int bytes = GST_VIDEO_INFO_COMP_DEPTH(&info_.frame, channel) > 8 ? 2 : 1;
     const int channels = GST_VIDEO_INFO_COMP_PSTRIDE(&info_.frame, channel) / bytes;

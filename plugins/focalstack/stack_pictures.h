@@ -5,6 +5,7 @@
 #include <gst/dff/dff.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -31,6 +32,9 @@ public:
     /* Component 0 is luma, or all colours. */
     cv::Mat component(unsigned plane, unsigned component) const;
 
+    /* From now on component() gives copies without these pixels. */
+    void leave_out(std::span<const cv::Point> bad_pixels);
+
     /* What each colour channel of the component is without light, or without colour. */
     std::vector<double> black(unsigned component) const;
 
@@ -49,6 +53,7 @@ private:
     GstBuffer *buffer_;
     GstMapInfo map_ = GST_MAP_INFO_INIT;
     std::vector<Place> planes_;
+    std::vector<cv::Mat> copies_; /* of the components of plane after plane; mostly none */
 };
 
 } // namespace dff

@@ -109,6 +109,37 @@ TEST_F(FocalStackAlign, a_plane_that_does_not_fit_is_told_once_and_not_shown)
     EXPECT_EQ(count_messages(bus_, GST_MESSAGE_WARNING), 1u);
 }
 
+/* They stay where they are, while the picture moves. */
+TEST_F(FocalStackAlign, bad_pixels_of_the_sensor_are_left_out_and_counted)
+{
+    const ShakenStack shaken({.size = {160, 120}, .planes = 6, .jitter = 2.0});
+    const std::vector<cv::Point> places = {{30, 20}, {81, 60}, {120, 90}};
+    std::vector<cv::Mat> spoilt;
+    for (const cv::Mat &plane : shaken.planes) {
+        spoilt.push_back(plane.clone());
+        for (const cv::Point &place : places)
+            spoilt.back().at<uchar>(place) = 255;
+    }
+    start(stack_info("GRAY8", shaken.size, 6));
+    const Owned<GstBuffer> good = align(new_stack(info_, shaken.planes));
+    TearDown();
+    start(stack_info("GRAY8", shaken.size, 6));
+    Owned<GstBuffer> repaired;
+    for (int i = 0; i < 3; i++)
+        repaired = align(new_stack(info_, spoilt));
+
+    GstMapInfo map, expected;
+    gst_buffer_map(repaired.get(), &map, GST_MAP_READ);
+    gst_buffer_map(good.get(), &expected, GST_MAP_READ);
+    const int size = static_cast<int>(map.size);
+    EXPECT_LT(
+        cv::norm(cv::Mat(1, size, CV_8U, map.data), cv::Mat(1, size, CV_8U, expected.data), cv::NORM_INF),
+        60.0);
+    gst_buffer_unmap(repaired.get(), &map);
+    gst_buffer_unmap(good.get(), &expected);
+    EXPECT_EQ(number_of(stats().get(), "bad-pixels"), places.size());
+}
+
 TEST_F(FocalStackAlign, planes_that_all_fit_warn_of_nothing)
 {
     const ShakenStack shaken(shaking);

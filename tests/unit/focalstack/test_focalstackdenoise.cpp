@@ -246,6 +246,35 @@ TEST_F(FocalStackDenoise, frames_can_be_changed_while_it_plays)
     EXPECT_EQ(bytes_of(denoised(100, 9).get()), bytes_of(unchanged.get()));
 }
 
+/* Hot and dead: 96 x 72 pixels, luma and the chroma that belongs to it. */
+TEST_F(FocalStackDenoise, bad_pixels_of_the_sensor_are_left_out_and_counted)
+{
+    start("I420", 6);
+    std::vector<guint8> bytes;
+    for (unsigned seed = 0; seed < 5; seed++) {
+        GstBuffer *stack = new_stack(info_, next_++, 100, seed);
+        GstMapInfo map;
+        gst_buffer_map(stack, &map, GST_MAP_WRITE);
+        for (guint z = 0; z < info_.planes; z++) {
+            map.data[z * info_.frame.size + 20 * width + 30] = 255;
+            map.data[z * info_.frame.size + 50 * width + 71] = 0;
+        }
+        gst_buffer_unmap(stack, &map);
+        gst_harness_push(harness_.get(), stack);
+        bytes = bytes_of(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get());
+    }
+    for (guint z = 0; z < info_.planes; z++) {
+        EXPECT_NEAR(bytes[z * info_.frame.size + 20 * width + 30], 100, 15) << "plane " << z;
+        EXPECT_NEAR(bytes[z * info_.frame.size + 50 * width + 71], 100, 15) << "plane " << z;
+    }
+    GstStructure *taken = nullptr;
+    g_object_get(harness_->element, "stats", &taken, nullptr);
+    const Owned<GstStructure> stats(taken);
+    guint64 bad = 0;
+    EXPECT_TRUE(gst_structure_get(stats.get(), "bad-pixels", G_TYPE_UINT64, &bad, nullptr));
+    EXPECT_EQ(bad, 2U);
+}
+
 TEST_F(FocalStackDenoise, a_stack_that_is_too_short_is_an_error_that_says_so)
 {
     start("GRAY8");
