@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/object_motion.h"
 
+#include "focalstack/velocity_refinement.h"
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -22,6 +24,7 @@ constexpr float ramp = 1.5F;        /* which is so many planes soft */
 constexpr int margin = 12;          /* pixels around all silhouettes */
 constexpr int least_for_flow = 64;  /* the flow needs as many pixels */
 constexpr int rim = 8;              /* pixels around an object that its blur may reach */
+constexpr int inner_rim = 5;        /* side of what must be inside an object for it to tell the velocity */
 constexpr float paint = 128.0F;     /* over the background */
 
 cv::Mat ellipse(int side)
@@ -52,15 +55,6 @@ cv::Rect rectangle_of(const Silhouettes &silhouettes)
     widen(where.x, where.width, size.width, std::max(margin, (least_for_flow - where.width + 1) / 2));
     widen(where.y, where.height, size.height, std::max(margin, (least_for_flow - where.height + 1) / 2));
     return where;
-}
-
-/* About a Gaussian, at a cost that does not grow with sigma. */
-void soften(const cv::Mat &from, double sigma, cv::Mat &to)
-{
-    const int side = static_cast<int>(std::lround(std::sqrt(4.0 * sigma * sigma + 1.0))) | 1;
-    cv::blur(from, to, {side, side}, {-1, -1}, cv::BORDER_REFLECT_101);
-    cv::blur(to, to, {side, side}, {-1, -1}, cv::BORDER_REFLECT_101);
-    cv::blur(to, to, {side, side}, {-1, -1}, cv::BORDER_REFLECT_101);
 }
 
 /* Half the size, the background painted out, blurred: what the flow goes by. */
@@ -134,13 +128,10 @@ void spread_velocity(const cv::Mat1b &middle, const cv::Mat1f &apart, cv::Mat2f 
 cv::Mat1f planes_on_path(const Silhouettes &silhouettes, const cv::Rect &where, const cv::Mat2f &velocity)
 {
     const auto planes = static_cast<unsigned>(silhouettes.tight.size());
-    cv::Mat2f path(velocity.size());
+    cv::Mat2f path;
     cv::Mat1f count = cv::Mat1f::zeros(velocity.size()), found;
     for (unsigned z = 0; z < planes; z++) {
-        const auto time = static_cast<float>(z - middle_of_sweep(planes));
-        for (int y = 0; y < path.rows; y++)
-            for (int x = 0; x < path.cols; x++)
-                path(y, x) = cv::Vec2f(static_cast<float>(x), static_cast<float>(y)) + time * velocity(y, x);
+        path_through(velocity, z - middle_of_sweep(planes), path);
         cv::Mat1f silhouette;
         silhouettes.tight[z](where).convertTo(silhouette, CV_32F);
         cv::remap(silhouette, found, path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
@@ -173,6 +164,56 @@ cv::Mat1f objects_of(cv::Mat1f count, float planes)
     return cv::Mat1f((count - outline * planes) / ramp + 0.5F);
 }
 
+cv::Mat1f speed_of(const cv::Mat2f &velocity)
+{
+    std::vector<cv::Mat> parts;
+    cv::split(velocity, parts);
+    cv::Mat1f speed;
+    cv::magnitude(parts[0], parts[1], speed);
+    return speed;
+}
+
+/* Velocity made more exact where anything moves: what stands and differs from the background stays at rest.
+ */
+void refine_moving(const SmallStack &sweep, const Silhouettes &silhouettes, ObjectMotion &motion)
+{
+    const cv::Mat1b moves = speed_of(motion.velocity) > slow / sweep.factor();
+    const cv::Mat1f count = planes_on_path(silhouettes, motion.where, motion.velocity);
+    cv::Mat1b inside = (count >= core * static_cast<float>(sweep.planes())) & moves;
+    cv::erode(inside, inside, ellipse(inner_rim));
+    cv::Mat2f refined = motion.velocity.clone();
+    refine_velocity(sweep, motion.where, inside, refined);
+    refined.copyTo(motion.velocity, moves);
+}
+
+/* Fills in where objects are, by their velocity; gives their speed. */
+cv::Mat1f find_objects(const SmallStack &sweep, const Silhouettes &silhouettes, ObjectMotion &motion)
+{
+    cv::Mat1f speed = speed_of(motion.velocity);
+    cv::Mat1f count = planes_on_path(silhouettes, motion.where, motion.velocity);
+    count.setTo(0.0F, speed <= slow / static_cast<float>(sweep.factor()));
+    motion.objects = objects_of(count, static_cast<float>(sweep.planes()));
+    return speed;
+}
+
+/* The same once more where there are objects without texture, whose outlines alone tell how they move. Gives
+ * the speed. */
+cv::Mat1f follow_plain(const SmallStack &sweep, const StillBackground &background,
+                       const StillBackground::Noise &noise, const cv::Mat1f &before, ObjectMotion &motion)
+{
+    refine_plain_velocity(sweep, background, motion.where, cv::Mat1b(before > 0.5F), noise, motion.velocity);
+    cv::Mat1f speed = find_objects(sweep, background.found(), motion);
+    refine_plain_outline(sweep, background, motion.where, cv::Mat1b(motion.objects > 0.5F), noise,
+                         motion.velocity, motion.objects);
+    const cv::Mat1b inside = cv::Mat1b(motion.objects > 0.5F);
+    if (cv::countNonZero(inside) > 0)
+        motion.rims =
+            find_rims(sweep, background, motion.where, inside, motion.velocity, noise, motion.objects);
+    else
+        motion.objects.setTo(0.0F);
+    return speed;
+}
+
 /* Where nothing moves, or no object is near. */
 cv::Mat1b left_alone(const cv::Mat1f &objects, const cv::Mat1b &slow_pixels)
 {
@@ -183,8 +224,10 @@ cv::Mat1b left_alone(const cv::Mat1f &objects, const cv::Mat1b &slow_pixels)
 
 } // namespace
 
-ObjectMotion find_motion(const SmallStack &sweep, const Silhouettes &silhouettes)
+ObjectMotion find_motion(const SmallStack &sweep, const StillBackground &background,
+                         const StillBackground::Noise &noise)
 {
+    const Silhouettes &silhouettes = background.found();
     ObjectMotion motion;
     motion.where = rectangle_of(silhouettes);
     if (motion.where.empty())
@@ -193,14 +236,18 @@ ObjectMotion find_motion(const SmallStack &sweep, const Silhouettes &silhouettes
     find_flow(sweep, silhouettes, motion.where, motion.velocity, apart);
     const cv::Mat1b middle = silhouettes.tight[sweep.planes() / 2](motion.where);
     spread_velocity(middle, apart, motion.velocity);
-    cv::Mat1f count = planes_on_path(silhouettes, motion.where, motion.velocity);
+    refine_moving(sweep, silhouettes, motion);
 
-    std::vector<cv::Mat> parts;
-    cv::split(motion.velocity, parts);
-    cv::Mat1f speed;
-    cv::magnitude(parts[0], parts[1], speed);
-    count.setTo(0.0F, speed <= slow / sweep.factor());
-    motion.objects = objects_of(count, static_cast<float>(sweep.planes()));
+    cv::Mat1f speed = find_objects(sweep, silhouettes, motion);
+    cv::Mat1b inside = cv::Mat1b(motion.objects > 0.5F);
+    if (cv::countNonZero(inside) > 0) {
+        const cv::Mat1f before = motion.objects.clone();
+        motion.rims =
+            find_rims(sweep, background, motion.where, inside, motion.velocity, noise, motion.objects);
+        if (cv::countNonZero(motion.rims.plain > 0.5F) > 0)
+            speed = follow_plain(sweep, background, noise, before, motion);
+    } else
+        motion.objects.setTo(0.0F);
     motion.stands = left_alone(motion.objects, cv::Mat1b(speed < slow / sweep.factor()));
     for (const cv::Mat1b &wide : silhouettes.wide)
         motion.stands &= wide(motion.where);

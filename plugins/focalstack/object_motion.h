@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "focalstack/still_background.h"
+#include "focalstack/object_rims.h"
 
 namespace dff {
 
@@ -15,13 +15,15 @@ struct ObjectMotion {
     cv::Mat1b stands;    /* differs from the background in each plane and is no moving object: it has
                             stopped, or what moved away was taken for background */
     double farthest = 0; /* largest velocity of any object */
+    ObjectRims rims;     /* empty if there are no objects */
 };
 
 /* Velocity: dense flow (Kroeger 2016) of pictures in which the background is painted out, between the middle
  * plane and planes two away, whose blur is alike; believed inside the middle plane's silhouettes and spread
  * over the objects. A pixel belongs to an object where its path through the sweep lies in the silhouettes of
  * nine tenths of the planes. */
-ObjectMotion find_motion(const SmallStack &sweep, const Silhouettes &silhouettes);
+ObjectMotion find_motion(const SmallStack &sweep, const StillBackground &background,
+                         const StillBackground::Noise &noise);
 
 /* Planes after the first one at which a followed sweep is seen. */
 constexpr double middle_of_sweep(unsigned planes)

@@ -38,6 +38,8 @@ public:
 
     const Silhouettes &found() const { return found_; }
 
+    const cv::Mat1f &plane(unsigned z, unsigned channel) const { return planes_[z].background[channel]; }
+
 private:
     struct Plane {
         std::vector<cv::Mat1f> background; /* a channel each */

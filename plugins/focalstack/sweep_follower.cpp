@@ -37,9 +37,19 @@ cv::Rect shown_part(const cv::Mat1b &mask)
     return cv::Rect(set.x - 1, set.y - 1, set.width + 2, set.height + 2) & cv::Rect({}, mask.size());
 }
 
-/* The plane's picture where its objects are in the middle of the sweep, `planes` before or after it. */
+/* Where objects are, or the blur of one without texture. */
+cv::Mat1b drawn_part(const ObjectMotion &motion)
+{
+    cv::Mat1b drawn = motion.objects > 0.0F;
+    for (const cv::Mat1f &share : motion.rims.share)
+        drawn |= (motion.rims.plain > 0.0F) & (share > 0.0F);
+    return drawn;
+}
+
+/* The plane's picture where its objects are in the middle of the sweep, `planes` before or after it: what
+ * they show, or what is behind them. */
 cv::Mat moved_picture(const cv::Mat &picture, const ObjectsOfComponent &objects, double farthest,
-                      double planes)
+                      double planes, int interpolation)
 {
     const int reach = static_cast<int>(std::ceil(farthest * objects.side * std::fabs(planes))) + 2;
     cv::Rect from = objects.where;
@@ -57,36 +67,8 @@ cv::Mat moved_picture(const cv::Mat &picture, const ObjectsOfComponent &objects,
             out[x] = {first + static_cast<float>(x) + time * velocity[x][0], row + time * velocity[x][1]};
     }
     cv::Mat moved;
-    cv::remap(picture(from), moved, path, {}, cv::INTER_LINEAR, cv::BORDER_REFLECT);
+    cv::remap(picture(from), moved, path, {}, interpolation, cv::BORDER_REFLECT);
     return moved;
-}
-
-/* Blends `over` into the picture by `share`, 0 to 1 or beyond. */
-template <typename Sample> void blend(cv::Mat picture, const cv::Mat &over, const cv::Mat1f &share)
-{
-    const int channels = picture.channels();
-    for (int y = 0; y < picture.rows; y++) {
-        auto *out = picture.ptr<Sample>(y);
-        const auto *shown = over.ptr<Sample>(y);
-        const float *part = share[y];
-        for (int x = 0; x < picture.cols; x++) {
-            if (part[x] <= 0.0F)
-                continue;
-            const float by = std::min(part[x], 1.0F);
-            for (int i = x * channels; i < (x + 1) * channels; i++) {
-                const auto from = static_cast<float>(out[i]);
-                out[i] = cv::saturate_cast<Sample>(from + by * (static_cast<float>(shown[i]) - from));
-            }
-        }
-    }
-}
-
-void blend(const cv::Mat &picture, const cv::Mat &over, const cv::Mat1f &share)
-{
-    if (picture.depth() == CV_16U)
-        blend<uint16_t>(picture, over, share);
-    else
-        blend<uint8_t>(picture, over, share);
 }
 
 } // namespace
@@ -121,7 +103,8 @@ std::span<const uint8_t> SweepFollower::look(const StackView &view, std::span<st
 {
     std::swap(small_, last_);
     small_.take(pictures_of(view, memory));
-    background_.follow(small_, last_, small_noise(noise));
+    noise_ = small_noise(noise);
+    background_.follow(small_, last_, noise_);
     hold_tiles();
     return holds_ ? std::span<const uint8_t>(held_) : std::span<const uint8_t>();
 }
@@ -173,12 +156,17 @@ ObjectsOfComponent SweepFollower::objects_of(size_t component, const ObjectMotio
 {
     ObjectsOfComponent objects;
     objects.side = small_.factor() / static_cast<int>(shape_.components()[component].subsampling);
-    const cv::Rect part = shown_part(cv::Mat1b(motion.objects > 0.0F));
+    const cv::Rect part = shown_part(drawn_part(motion));
     if (part.empty())
         return objects;
     objects.where = enlarged(part + motion.where.tl(), objects.side);
     objects.velocity = enlarged(cv::Mat2f(motion.velocity(part)), objects.side) * objects.side;
     objects.objects = enlarged(cv::Mat1f(motion.objects(part)), objects.side);
+    objects.plain = enlarged(cv::Mat1f(motion.rims.plain(part)), objects.side);
+    for (unsigned i = 0; i < small_.channels(); i++)
+        if (small_.component_of(i) == component)
+            objects.colours.push_back(enlarged(cv::Mat1f(motion.rims.colours[i](part)), objects.side));
+    objects.part = part;
     return objects;
 }
 
@@ -207,14 +195,20 @@ SweepFollower::Fill SweepFollower::fill_of(size_t component, unsigned z, const O
 void SweepFollower::compose(const cv::Mat &picture, unsigned z, const ObjectMotion &motion,
                             const ObjectsOfComponent &objects, Fill &fill) const
 {
+    const double planes = z - middle_of_sweep(shape_.planes);
     cv::Mat moved;
     if (!objects.where.empty())
-        moved = moved_picture(picture, objects, motion.farthest, z - middle_of_sweep(shape_.planes));
+        moved = moved_picture(picture, objects, motion.farthest, planes, cv::INTER_LINEAR);
     if (!fill.where.empty())
         blend(picture(fill.where), cv::Mat(fill.where.size(), picture.type(), fill.background.samples.data()),
               fill.share);
-    if (!objects.where.empty())
-        blend(picture(objects.where), moved, objects.objects);
+    if (objects.where.empty())
+        return;
+    const cv::Mat behind = moved_picture(picture, objects, motion.farthest, planes, cv::INTER_LINEAR);
+    const PlaneOfObjects plane = {moved, behind,
+                                  enlarged(cv::Mat1f(motion.rims.share[z](objects.part)), objects.side),
+                                  enlarged(cv::Mat1f(motion.rims.noisy[z](objects.part)), objects.side)};
+    draw_objects(picture(objects.where), plane, objects);
 }
 
 void SweepFollower::follow(const StackView &view, std::span<std::byte> memory, StackDenoiser &denoiser)
@@ -222,7 +216,7 @@ void SweepFollower::follow(const StackView &view, std::span<std::byte> memory, S
     const Silhouettes &found = background_.found();
     if (found.moved <= 0.0 || found.is_whole)
         return;
-    const ObjectMotion motion = find_motion(small_, found);
+    const ObjectMotion motion = find_motion(small_, background_, noise_);
     if (motion.where.empty())
         return;
     const size_t components = shape_.components().size();

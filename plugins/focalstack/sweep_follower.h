@@ -3,17 +3,10 @@
 #pragma once
 
 #include "engine/stack_denoiser.h"
+#include "focalstack/object_drawing.h"
 #include "focalstack/object_motion.h"
 
 namespace dff {
-
-/* Pixels of a component's picture that objects cover in the middle of the sweep, and how they move. */
-struct ObjectsOfComponent {
-    cv::Rect where;
-    int side;           /* pixels of the component a pixel of the small pictures */
-    cv::Mat2f velocity; /* a plane */
-    cv::Mat1f objects;  /* 0 to 1, not clipped */
-};
 
 /* Motion inside the sweep: turns the planes of one sweep, taken one after the other, into planes as if all
  * were taken at the middle of it. Objects that move are followed along their path; what they cover in a plane
@@ -58,6 +51,7 @@ private:
     StackShape shape_;
     SmallStack small_, last_; /* this sweep and the one before */
     StillBackground background_;
+    StillBackground::Noise noise_;
     std::vector<uint8_t> held_;     /* [plane][tile] */
     bool holds_ = false;            /* held_ has anything but 0 in it */
     std::vector<cv::Mat1b> filled_; /* shows the background, unless an object is before it */
