@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling]
+"""live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling] [--denoise F [--local-motion]]
+           [--camera OPTIONS]
 
 A live simulated camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown
 how many stacks were late or dropped, how many of these while a hypervisor took the processors away, and how long after
@@ -28,10 +29,13 @@ STOLEN_SHARE = 0.02  # of a second's processor time, above which the machine was
 def pipeline_text(options):
     width, height = options.size.split("x")
     frames = int(options.seconds * options.rate * options.planes)
+    denoise = (f"queue max-size-bytes=0 ! focalstackdenoise name=denoise frames={options.denoise} "
+               f"local-motion={options.local_motion} ! " if options.denoise > 1 else "")
     return (
-        f"lenssweeptestsrc name=camera is-live=true planes={options.planes} rate={options.rate} num-buffers={frames} ! "
+        f"lenssweeptestsrc name=camera is-live=true planes={options.planes} rate={options.rate} num-buffers={frames} "
+        f"{options.camera} ! "
         f"video/x-raw,format=I420,width={width},height={height} ! queue ! "
-        f"focalstackmux name=mux window={options.window} ! tee name=s  "
+        f"focalstackmux name=mux window={options.window} ! {denoise}tee name=s  "
         f"s. ! queue max-size-bytes=0 ! dffdepth name=depth method={options.method} ! tee name=d  "
         "d. ! queue ! picture.depth  s. ! queue max-size-bytes=0 ! picture.stack  "
         "aifcompose name=picture ! queue ! fakesink name=sink sync=true qos=true max-lateness=20000000  "
@@ -145,6 +149,9 @@ def main():
     parser.add_argument("--planes", type=int, default=6)
     parser.add_argument("--rate", type=int, default=26)
     parser.add_argument("--window", default="sweep")
+    parser.add_argument("--denoise", type=int, default=1, metavar="F", help="sweeps that focalstackdenoise averages")
+    parser.add_argument("--local-motion", action="store_true", help="what moves is followed")
+    parser.add_argument("--camera", default="", metavar="OPTIONS", help="of lenssweeptestsrc: noise=strong motion=4")
     options = parser.parse_args()
 
     Gst.init(None)
@@ -164,6 +171,9 @@ def main():
           f"for, {len(latency.milliseconds)} depth maps, {rendered} pictures in time, {dropped} late and dropped; "
           f"{len(latency.milliseconds) / passed:.1f} depth maps/s over {passed:.1f} s, {cpu / passed:.2f} CPUs busy")
     print(f"mux: {pipeline.get_by_name('mux').get_property('stats').to_string()}")
+    if denoiser := pipeline.get_by_name("denoise"):
+        stats = denoiser.get_property("stats")
+        print("denoise: " + ", ".join(f"{name} {stats.get_value(name):.3g}" for name in ("stacks", "sweeps", "moved")))
     stolen.print(late)
     latency.print()
     pipeline.set_state(Gst.State.NULL)
