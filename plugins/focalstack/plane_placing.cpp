@@ -30,6 +30,23 @@ constexpr int least_box = 5; /* pixels */
 constexpr double fade_start = -4.0;
 constexpr double fade_length = 1.0;
 
+/* Pixels inside that border that say how much brighter or darker than its filling the plane goes on. A step
+ * there is the sharpest edge that a blurred plane has: beside a bright line it drew depth to the sweep's end.
+ * Four scenes that breathe by 10 %, at 2 / 4 px of blur a plane: depth of 26.3 / 26.0 dB with it, 29.0 / 28.3
+ * without. */
+constexpr int seen_inside = 16;
+
+/* Of a cell, where it is divided by. */
+constexpr float least_share = 1e-4F;
+
+cv::Mat repeated(const cv::Mat1f &channel, int channels)
+{
+    cv::Mat result;
+
+    cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(channels), channel), result);
+    return result;
+}
+
 cv::Mat softened(const cv::Mat &picture, cv::Rect place, int step)
 {
     const int side =
@@ -85,23 +102,42 @@ cv::Rect surely_shown(const PlaneAlignment &alignment, cv::Size size, int step)
     return cv::Rect(from, to) & cv::Rect({}, size);
 }
 
+/* Carries values, each times its share, into where the share is less than 1: in ever smaller pictures, so
+ * that they are the smoother the farther they go. */
+cv::Mat spread_out(const cv::Mat &weighted, const cv::Mat1f &share)
+{
+    const cv::Size half((share.cols + 1) / 2, (share.rows + 1) / 2);
+    cv::Mat coarse, spread, rest;
+    cv::Mat1f coarse_share;
+
+    if (share.total() == 1)
+        return weighted / std::max(share(0, 0), least_share);
+    cv::resize(weighted, coarse, half, 0.0, 0.0, cv::INTER_AREA);
+    cv::resize(share, coarse_share, half, 0.0, 0.0, cv::INTER_AREA);
+    /* A quarter of a cell is enough to fill it. */
+    const cv::Mat1f filled = cv::min(4.0 * coarse_share, 1.0);
+    cv::multiply(coarse, repeated(filled / cv::max(coarse_share, least_share), coarse.channels()), coarse);
+    cv::resize(spread_out(coarse, filled), spread, share.size(), 0.0, 0.0, cv::INTER_LINEAR);
+    cv::multiply(spread, repeated(1.0 - share, spread.channels()), rest);
+    return weighted + rest;
+}
+
 void fill_place(const cv::Mat &neighbour, const cv::Mat &plane, const PlaneAlignment &alignment,
                 cv::Rect place, int step)
 {
     if (place.empty())
         return;
     const cv::Mat1f share = own_share(alignment, plane.size(), place, step);
-    cv::Mat filled, own, shares;
+    cv::Mat filled, own;
 
     if (is_shown(alignment))
         neighbour(place).convertTo(filled, CV_32F);
     else
         filled = softened(neighbour, place, step);
     plane(place).convertTo(own, CV_32F);
-    cv::merge(std::vector<cv::Mat>(static_cast<std::size_t>(own.channels()), share), shares);
     cv::subtract(own, filled, own);
-    cv::multiply(own, shares, own);
-    cv::add(filled, own, filled);
+    cv::multiply(own, repeated(share, own.channels()), own);
+    cv::add(filled, is_shown(alignment) ? spread_out(own, share) : own, filled);
     filled.convertTo(plane(place), plane.type());
 }
 
@@ -113,11 +149,17 @@ void fill_plane(const cv::Mat &neighbour, const cv::Mat &plane, const PlaneAlign
         fill_place(neighbour, plane, alignment, {{}, plane.size()}, step);
         return;
     }
-    const int right = shown.x + shown.width, bottom = shown.y + shown.height;
-    fill_place(neighbour, plane, alignment, {0, 0, plane.cols, shown.y}, step);
-    fill_place(neighbour, plane, alignment, {0, bottom, plane.cols, plane.rows - bottom}, step);
-    fill_place(neighbour, plane, alignment, {0, shown.y, shown.x, shown.height}, step);
-    fill_place(neighbour, plane, alignment, {right, shown.y, plane.cols - right, shown.height}, step);
+    const int seen = seen_inside / step, right = shown.x + shown.width, bottom = shown.y + shown.height;
+    const auto fill = [&](cv::Rect hidden, cv::Rect around) {
+        if (!hidden.empty())
+            fill_place(neighbour, plane, alignment, around & cv::Rect({}, plane.size()), step);
+    };
+    fill({0, 0, plane.cols, shown.y}, {0, 0, plane.cols, shown.y + seen});
+    fill({0, bottom, plane.cols, plane.rows - bottom},
+         {0, bottom - seen, plane.cols, plane.rows - bottom + seen});
+    fill({0, shown.y, shown.x, shown.height}, {0, shown.y, shown.x + seen, shown.height});
+    fill({right, shown.y, plane.cols - right, shown.height},
+         {right - seen, shown.y, plane.cols - right + seen, shown.height});
 }
 
 bool is_in_place(const PlaneWarp &warp, cv::Size size, int step)

@@ -22,8 +22,8 @@ bool is_shown(const PlaneAlignment &alignment);
 void undo_warp(const cv::Mat &plane, cv::Mat aligned, const PlaneWarp &warp, int step = 1);
 
 /* Fills what each plane does not show from its neighbour towards the middle: what lies more than 4 pixels
- * beyond its border with a copy, a plane that is not trusted with a softened one, which is never sharper than
- * the plane it comes from, where the depth belongs. */
+ * beyond its border with a copy that goes on from the plane without a step, a plane that is not trusted with
+ * a softened one, which is never sharper than the plane it comes from, where the depth belongs. */
 void fill_hidden(std::span<const cv::Mat> aligned, std::span<const PlaneAlignment> alignments, int step = 1);
 
 } // namespace dff
