@@ -232,6 +232,7 @@ async def table_rewritten_in_mid_sweep_takes_effect_between_sweeps(dut):
     await bench.until_triggers(8, 6_000)
     commit_sweep = (len(bench.trigger_starts()) - 1) // 3
     await bench.host.write_word(WORD["commit"], 1)
+    await bench.host.write_word(WORD["period_us"], 900)  # without a commit, before the exchange
     assert await bench.status("commit_pending")
     whole = commit_sweep + 1
     await bench.until_triggers(3 * whole + 8, 16_000)
