@@ -41,6 +41,7 @@
 
 #include "common/stack_noise.h"
 #include "focalstack/bad_pixels.h"
+#include "focalstack/focalstackdenoise_properties.h"
 #include "focalstack/sweep_follower.h"
 #include "gstcl/compute_latency.h"
 #include "gstcl/device_context.h"
@@ -61,14 +62,6 @@ GST_DEBUG_CATEGORY_STATIC(focalstackdenoise_debug);
 
 namespace {
 
-enum Property : guint {
-    PropertyFrames = 1,
-    PropertyStrength,
-    PropertyLocalMotion,
-    PropertyDevice,
-    PropertyStats
-};
-
 struct FocalStackDenoiseState {
     explicit FocalStackDenoiseState(GstElement *element) : context(element) {}
 
@@ -82,15 +75,15 @@ struct FocalStackDenoiseState {
     dff::BadPixels bad_pixels;
 
     std::mutex mutex; /* guards what follows; nothing is locked under it */
-    dff::DenoiseParameters parameters;
-    bool local_motion = false;
+    dff::DenoiseSettings settings;
     double moved = 0.0; /* part of the last stack */
     guint64 bad_pixel_count = 0;
-    std::string device_wish;
     dff::DenoiseReport report;
     guint64 stacks = 0;
     dff::ComputeLatency latency;
 };
+
+constexpr guint property_stats = dff::denoise_properties_end;
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENGINE_STACK_CAPS));
@@ -181,15 +174,14 @@ void account(GstFocalStackDenoise *self, dff::DenoiseReport report, GstClockTime
 
 /* What the user wants of this stack, and what the one before told of noise. */
 struct Wishes {
-    dff::DenoiseParameters parameters;
-    bool local_motion;
+    dff::DenoiseSettings settings;
     dff::DenoiseReport report;
 };
 
 Wishes wishes(FocalStackDenoiseState &state)
 {
     const std::lock_guard lock(state.mutex);
-    return {state.parameters, state.local_motion, state.report};
+    return {state.settings, state.report};
 }
 
 /* All planes are known to be of one sweep, one after the other. */
@@ -223,15 +215,15 @@ void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, gu
     const Wishes wanted = wishes(state);
     const dff::StackView &view = stack.view();
     const bool has_few = view.shape.planes < dff::SweepFollower::fewest_planes;
-    if (!wanted.local_motion || has_few || absent != 0 || !is_one_sweep(view)) {
+    if (!wanted.settings.local_motion || has_few || absent != 0 || !is_one_sweep(view)) {
         state.follower.reset();
-        state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters);
+        state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters);
         return;
     }
     if (!state.follower)
         state.follower = std::make_unique<dff::SweepFollower>(view.shape);
     const std::span<const uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
-    state.denoiser->denoise(view, stack.memory(), absent, wanted.parameters, held);
+    state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters, held);
     state.follower->follow(view, stack.memory(), *state.denoiser);
 }
 
@@ -324,7 +316,7 @@ gboolean start(GstBaseTransform *base)
     std::string wish;
     {
         const std::lock_guard lock(state.mutex);
-        wish = state.device_wish;
+        wish = state.settings.device;
         state.stacks = 0;
         state.report = {};
         state.moved = 0.0;
@@ -380,54 +372,29 @@ GstStructure *statistics(FocalStackDenoiseState &state)
     return stats;
 }
 
-bool take_property(FocalStackDenoiseState &state, guint id, const GValue *value)
-{
-    const std::lock_guard lock(state.mutex);
-    if (id == PropertyFrames)
-        state.parameters.frames = g_value_get_uint(value);
-    else if (id == PropertyStrength)
-        state.parameters.strength = static_cast<float>(g_value_get_double(value));
-    else if (id == PropertyLocalMotion)
-        state.local_motion = g_value_get_boolean(value);
-    else if (id == PropertyDevice)
-        state.device_wish = g_value_get_string(value) ? g_value_get_string(value) : "";
-    else
-        return false;
-    return true;
-}
-
-/* A single sweep without motion is passed on without a look at it. */
-bool has_nothing_to_do(FocalStackDenoiseState &state)
-{
-    const std::lock_guard lock(state.mutex);
-    return state.parameters.frames == 1 && !state.local_motion;
-}
-
 void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
     FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
-    if (!take_property(state, id, value))
+    bool is_known = false, is_idle = false;
+    {
+        const std::lock_guard lock(state.mutex);
+        is_known = dff::set_denoise_property(state.settings, id, value);
+        is_idle = state.settings.ask_for_nothing();
+    }
+    if (!is_known)
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-    gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(object), has_nothing_to_do(state));
+    gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(object), is_idle);
 }
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
     FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
-    if (id == PropertyStats) {
+    if (id == property_stats) {
         g_value_take_boxed(value, statistics(state));
         return;
     }
     const std::lock_guard lock(state.mutex);
-    if (id == PropertyFrames)
-        g_value_set_uint(value, state.parameters.frames);
-    else if (id == PropertyStrength)
-        g_value_set_double(value, static_cast<double>(state.parameters.strength));
-    else if (id == PropertyLocalMotion)
-        g_value_set_boolean(value, state.local_motion);
-    else if (id == PropertyDevice)
-        g_value_set_string(value, state.device_wish.c_str());
-    else
+    if (!dff::get_denoise_property(state.settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
 }
 
@@ -439,35 +406,7 @@ void finalize(GObject *object)
 
 void install_properties(GObjectClass *object_class)
 {
-    const auto playing =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
-    const auto ready =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_READY);
-    g_object_class_install_property(
-        object_class, PropertyFrames,
-        g_param_spec_uint("frames", "Frames",
-                          "Sweeps that are averaged at most; 1 leaves the stacks as they are", 1, 255, 8,
-                          playing));
-    g_object_class_install_property(
-        object_class, PropertyStrength,
-        g_param_spec_double(
-            "strength", "Strength",
-            "How much change from sweep to sweep passes for noise: 1 is six standard deviations of "
-            "it; less sees fainter motion, more averages where noise is uneven",
-            0.25, 4.0, 1.0, playing));
-    g_object_class_install_property(
-        object_class, PropertyLocalMotion,
-        g_param_spec_boolean("local-motion", "Local motion",
-                             "Shows what moves during the sweep in all planes where it is in the middle of "
-                             "the sweep, before what stood still in the sweeps before",
-                             FALSE, playing));
-    g_object_class_install_property(
-        object_class, PropertyDevice,
-        g_param_spec_string(
-            "device", "Device",
-            "Part of the name of the OpenCL device to compute on, as clinfo -l lists it; empty takes "
-            "the first GPU, else the first device",
-            "", ready));
+    dff::install_denoise_properties(object_class);
     /**
      * GstFocalStackDenoise:stats:
      *
@@ -478,7 +417,7 @@ void install_properties(GObjectClass *object_class)
      * which white has 256.
      */
     g_object_class_install_property(
-        object_class, PropertyStats,
+        object_class, property_stats,
         g_param_spec_boxed("stats", "Statistics",
                            "Stacks denoised, sweeps averaged and part that moved in the last one, bad "
                            "pixels of the sensor, noise "
