@@ -84,6 +84,7 @@ TEST(StepMode, no_frame_is_labelled_that_a_lens_driver_was_not_at_rest_for)
     constexpr unsigned labelled = 60;
     constexpr guint64 exposure = GST_SECOND / 30; /* as long as the frame's time */
     constexpr guint64 settle = 20 * GST_MSECOND;  /* of the nominal profile */
+    rig::empty_i2c_log();                         /* which is full after so many lines */
     Pipeline pipeline(
         "videotestsrc is-live=true ! video/x-raw,width=64,height=64,framerate=30/1 ! lenssweeptag name=tag "
         "lens=max14574:" +
