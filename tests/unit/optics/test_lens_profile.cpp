@@ -131,12 +131,18 @@ TEST(LensProfile, a_max14515_is_told_codes)
         std::string::npos);
 }
 
-TEST(LensProfile, the_shipped_one_is_nominal_and_within_what_the_driver_can)
+TEST(LensProfile, those_shipped_are_nominal_and_within_what_the_driver_can)
 {
-    const auto profile = dff::LensProfile::load(SHIPPED_PROFILE);
-    EXPECT_TRUE(profile.nominal());
-    EXPECT_GE(profile.drive(profile.farthest()), 24.4);
-    EXPECT_LE(profile.drive(profile.nearest()), 69.9);
-    EXPECT_LE(profile.farthest(), 0.0);
-    EXPECT_GE(profile.nearest(), 5.0);
+    unsigned shipped = 0;
+    for (const auto &file : std::filesystem::directory_iterator(SHIPPED_PROFILES)) {
+        SCOPED_TRACE(file.path());
+        const auto profile = dff::LensProfile::load(file.path());
+        EXPECT_TRUE(profile.nominal());
+        EXPECT_GE(profile.drive(profile.farthest()), 24.4);
+        EXPECT_LE(profile.drive(profile.nearest()), 69.9);
+        EXPECT_LE(profile.farthest(), 0.0);
+        EXPECT_GE(profile.nearest(), 5.0);
+        shipped++;
+    }
+    EXPECT_EQ(shipped, 4U);
 }
