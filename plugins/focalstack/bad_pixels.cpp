@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace dff {
 
 namespace {
 
-constexpr int stands_out = 12;   /* of 255: what is less does little harm */
-constexpr int enough_sweeps = 3; /* in which a bad pixel stood out */
-constexpr int most_sweeps = 8;   /* that count, so that it is forgotten after as many */
-constexpr int slices = 32;       /* of the rows, one of which is searched in each sweep */
-constexpr int most_are = 400;    /* one of so many pixels is bad at most: more are what all planes show */
+constexpr int stands_out = 12;  /* of 255: what is less does little harm */
+constexpr int another_part = 8; /* of 255: by so much its neighbours' mean differs before it */
+constexpr int enough_parts = 3; /* of the scene, before which a bad pixel stood out */
+constexpr int most_parts = 8;   /* that count, so that it is forgotten after as many sweeps */
+constexpr int slices = 32;      /* of the rows, one of which is searched in each sweep */
+constexpr int most_are = 400;   /* one of so many pixels is bad at most: more are what all planes show */
 
 bool is_before(const cv::Point &a, const cv::Point &b)
 {
@@ -49,6 +51,34 @@ bool stands_in_most(std::span<const cv::Mat> planes, const cv::Point &sample, bo
         if (!stands(plane, sample, is_bright) && left-- == 0)
             return false;
     return true;
+}
+
+/* Mean of a sample's neighbours in all planes. */
+template <typename Sample> double mean_around(std::span<const cv::Mat> planes, const cv::Point &sample)
+{
+    double sum = 0.0;
+    for (const cv::Mat &plane : planes) {
+        const int channels = plane.channels();
+        for (int y = sample.y - 1; y <= sample.y + 1; y++)
+            for (int x = sample.x - channels; x <= sample.x + channels; x += channels)
+                sum += y != sample.y || x != sample.x ? plane.ptr<Sample>(y)[x] : 0;
+    }
+    return sum / (8.0 * static_cast<double>(planes.size()));
+}
+
+double mean_around(std::span<const cv::Mat> planes, const cv::Point &sample)
+{
+    return planes.front().depth() == CV_16U ? mean_around<uint16_t>(planes, sample)
+                                            : mean_around<uint8_t>(planes, sample);
+}
+
+double mean_of(const cv::Mat &picture)
+{
+    const cv::Scalar means = cv::mean(picture);
+    double sum = 0.0;
+    for (int i = 0; i < picture.channels(); i++)
+        sum += means[i];
+    return sum / picture.channels();
 }
 
 /* Gives each sample of one row that stands out from the four nearest to `found`, in steps that the compiler
@@ -123,7 +153,7 @@ void BadPixels::add_suspects(std::span<const cv::Mat> planes)
     std::vector<Suspect> found;
     const auto add = [&](const cv::Point &sample, bool is_bright) {
         if (stands_in_most(planes, sample, is_bright))
-            found.push_back({sample, is_bright, 0, false});
+            found.push_back({sample, is_bright, 0, false, 0.0, 0.0});
     };
     if (picture.depth() == CV_16U)
         search_rows<uint16_t>(picture, first, end, add);
@@ -145,22 +175,40 @@ void BadPixels::tell_places(const cv::Mat &picture)
     }
 }
 
+/* Another part of the scene is before a suspect where its neighbours have changed, and not by the light on
+ * all of the picture. */
+void BadPixels::judge(Suspect &suspect, std::span<const cv::Mat> planes, double brightness)
+{
+    if (!stands_in_most(planes, suspect.sample, suspect.is_bright)) {
+        suspect.parts--;
+        return;
+    }
+    const double around = mean_around(planes, suspect.sample);
+    const double same = suspect.around * brightness / std::max(suspect.brightness, 1.0);
+    const double unit = planes.front().depth() == CV_16U ? 256.0 : 1.0;
+    if (suspect.parts > 0 && std::abs(around - same) <= another_part * unit)
+        return;
+    suspect.parts = std::min(suspect.parts + 1, most_parts);
+    suspect.is_bad = suspect.is_bad || suspect.parts >= enough_parts;
+    suspect.around = around;
+    suspect.brightness = brightness;
+}
+
 void BadPixels::look(std::span<const cv::Mat> planes)
 {
     if (planes.size() < fewest_planes)
         return;
     add_suspects(planes);
-    for (Suspect &suspect : suspects_) {
-        const bool stood_out = stands_in_most(planes, suspect.sample, suspect.is_bright);
-        suspect.sweeps = std::min(suspect.sweeps + (stood_out ? 1 : -1), most_sweeps);
-        suspect.is_bad = suspect.is_bad || suspect.sweeps >= enough_sweeps;
-    }
-    std::erase_if(suspects_, [](const Suspect &suspect) { return suspect.sweeps <= 0; });
-    if (suspects_.size() * most_are > planes.front().total()) {
+    const double brightness = mean_of(planes.front());
+    for (Suspect &suspect : suspects_)
+        judge(suspect, planes, brightness);
+    std::erase_if(suspects_, [](const Suspect &suspect) { return suspect.parts <= 0; });
+    const cv::Mat &picture = planes.front();
+    if (suspects_.size() * most_are > picture.total() * static_cast<std::size_t>(picture.channels())) {
         suspects_.clear();
         slice_ = -1;
     }
-    tell_places(planes.front());
+    tell_places(picture);
 }
 
 void repair_pixels(cv::Mat picture, std::span<const cv::Point> places, int step)

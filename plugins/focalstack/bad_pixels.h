@@ -13,8 +13,9 @@ namespace dff {
  * that is sharp in all planes, and hold fast what follows corners.
  *
  * A pixel is bad that stands out from all of its eight neighbours, to the same side, in nine tenths of the
- * planes of three sweeps: what the scene has is blurred in some of them. Where two bad ones touch, neither is
- * found; where more than one pixel of 400 stands out, all planes show the same, and none is bad. */
+ * planes, before three parts of the scene at least: what stands out before one only, such as a star, may be
+ * the scene's own. Where two bad ones touch, neither is found; where more than one pixel of 400 stands out,
+ * all planes show the same, and none is bad. */
 class BadPixels {
 public:
     /* Of fewer planes all may be sharp. */
@@ -34,11 +35,13 @@ private:
     struct Suspect {
         cv::Point sample; /* column, counting channels one by one, and row */
         bool is_bright;
-        int sweeps; /* in which it stood out, less those in which it did not */
+        int parts; /* of the scene, before which it stood out, less the sweeps in which it did not */
         bool is_bad;
+        double around, brightness; /* mean of its neighbours, and of the picture, before the last part */
     };
 
     void add_suspects(std::span<const cv::Mat> planes);
+    static void judge(Suspect &suspect, std::span<const cv::Mat> planes, double brightness);
     void tell_places(const cv::Mat &picture);
 
     std::vector<Suspect> suspects_; /* by rows */

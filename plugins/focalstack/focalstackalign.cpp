@@ -27,9 +27,9 @@
  * and an offset a channel: lights flicker, and cameras meter each photograph anew. It takes a few
  * milliseconds for each megapixel of a stack.
  *
- * Pixels of the sensor that are too bright or too dark in all planes of three sweeps, hot and dead ones,
- * become the median of their neighbours before anything else: they stay where they are while the picture
- * moves.
+ * Pixels of the sensor that are too bright or too dark in all planes, whatever is before them, hot and dead
+ * ones, become the median of their neighbours before anything else. They are known after three parts of the
+ * scene have come before them: while nothing moves they may be the scene's own.
  *
  * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
  * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.

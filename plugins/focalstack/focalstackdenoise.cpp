@@ -12,9 +12,10 @@
  * the noise of the sensor, as a curve over brightness that the element finds in the pictures themselves and
  * tells in `stats`. Planes that were lost or repeat another's picture are left as they are.
  *
- * Pixels of the sensor that are too bright or too dark in all planes of three sweeps, hot and dead ones,
- * become the median of their neighbours before anything else; they are found in sweeps of five planes or
- * more.
+ * Pixels of the sensor that are too bright or too dark in all planes, whatever is before them, hot and dead
+ * ones, become the median of their neighbours before anything else. They are known after three parts of the
+ * scene have come before them, for while nothing moves they may be the scene's own, and in sweeps of five
+ * planes or more.
  *
  * The noise that is left goes with each stack whose planes have it alike, from the second one on: a
  * GstCustomMeta by the name GstFocalStackNoiseMeta, whose field "luma" (double) is the standard deviation of

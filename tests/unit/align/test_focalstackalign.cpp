@@ -114,19 +114,25 @@ TEST_F(FocalStackAlign, bad_pixels_of_the_sensor_are_left_out_and_counted)
 {
     const ShakenStack shaken({.size = {160, 120}, .planes = 6, .jitter = 2.0});
     const std::vector<cv::Point> places = {{30, 20}, {81, 60}, {120, 90}};
-    std::vector<cv::Mat> spoilt;
-    for (const cv::Mat &plane : shaken.planes) {
-        spoilt.push_back(plane.clone());
-        for (const cv::Point &place : places)
-            spoilt.back().at<uchar>(place) = 255;
-    }
+    const auto moved = [&](int by, bool is_spoilt) {
+        std::vector<cv::Mat> stack;
+        for (const cv::Mat &plane : shaken.planes) {
+            stack.emplace_back();
+            cv::hconcat(plane.colRange(by, plane.cols), plane.colRange(0, by), stack.back());
+            for (const cv::Point &place : places)
+                if (is_spoilt)
+                    stack.back().at<uchar>(place) = 255;
+        }
+        return stack;
+    };
+    constexpr int stacks = 8, step = 5;
     start(stack_info("GRAY8", shaken.size, 6));
-    const Owned<GstBuffer> good = align(new_stack(info_, shaken.planes));
+    const Owned<GstBuffer> good = align(new_stack(info_, moved(stacks * step, false)));
     TearDown();
     start(stack_info("GRAY8", shaken.size, 6));
     Owned<GstBuffer> repaired;
-    for (int i = 0; i < 3; i++)
-        repaired = align(new_stack(info_, spoilt));
+    for (int i = 1; i <= stacks; i++)
+        repaired = align(new_stack(info_, moved(i * step, true)));
 
     GstMapInfo map, expected;
     gst_buffer_map(repaired.get(), &map, GST_MAP_READ);
