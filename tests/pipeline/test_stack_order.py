@@ -148,6 +148,12 @@ class BySharpness(unittest.TestCase):
             shuffled = [int(number) for number in np.random.default_rng(7).permutation(numbers)]
             self.assertIn('Out of order', self.told(lumas, shuffled))
 
+    def test_noise_alone_has_no_order(self):
+        random = np.random.default_rng(3)
+        for size, count in (((480, 640), 4), ((600, 800), 10), ((48, 64), 8)):
+            lumas = [np.round(100 + random.normal(0, 5, size)).astype(np.uint8) for _ in range(count)]
+            self.assertIsNone(self.told(lumas, list(range(count))))
+
     def test_copies_are_told(self):
         lumas = self.sweeps['noise']
         saved_again = lumas[9] + np.random.default_rng(8).integers(0, 2, lumas[9].shape, np.uint8)

@@ -357,6 +357,13 @@ TEST(LightFieldCompose, a_disparity_that_is_not_shown_sharply_is_a_warning_that_
     EXPECT_TRUE(blurred.end_of_stream);
     EXPECT_NE(blurred.warning.find("they move by 7.7 pixels"), std::string::npos) << blurred.warning;
     EXPECT_NE(blurred.warning.find("depth-gain of at most 0.15"), std::string::npos) << blurred.warning;
+    for (const char *columns : {"columns=5", "columns=7", "columns=11"}) { /* what is advised is enough */
+        const std::string others = std::string("layout=views view-cone=31 ") + columns + " depth-gain=";
+        const std::string warning = run(scene() + others + "0.5 ! fakesink").warning;
+        const std::string advised = "at most ";
+        const double gain = std::stod(warning.substr(warning.find(advised) + advised.size()));
+        EXPECT_EQ(run(scene() + others + std::to_string(gain) + " ! fakesink").warning, "") << warning;
+    }
     EXPECT_EQ(run(scene() + "layout=rgbd depth-gain=9 ! fakesink").warning, "");
     EXPECT_EQ(run(scene() + "layout=views depth-gain=9 ! fakesink").warning, "");
 }
