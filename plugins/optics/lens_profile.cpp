@@ -52,7 +52,10 @@ try {
     profile.lens_powers_ = rising_numbers(entries, "lens_power", dioptres);
     profile.driver_ = driver_in(entries);
     const bool has_codes = profile.driver_ == LensDriverKind::Max14515;
-    const char *drives = has_codes ? "codes" : "volts";
+    const char *drives = has_codes ? "codes" : "volts", *others = has_codes ? "volts" : "codes";
+    if (entries.has(others))
+        entries.fail(std::string(others) + " are for a " + (has_codes ? "MAX14574" : "MAX14515") +
+                     ": leave them out, or name it as the driver");
     profile.drives_ = rising_numbers(entries, drives, has_codes ? max14515_codes : volts_rms);
     if (profile.drives_.size() != profile.lens_powers_.size())
         entries.fail("lens_power and " + std::string(drives) + " differ in length");

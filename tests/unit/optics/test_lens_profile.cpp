@@ -125,7 +125,13 @@ TEST(LensProfile, a_max14515_is_told_codes)
     EXPECT_DOUBLE_EQ(profile.drive(5.0), 255.0);
     EXPECT_NE(fault_of(with(codes, "255", "256")).find("codes[2] is 256 and must be 0 to 255"),
               std::string::npos);
-    EXPECT_NE(fault_of(good + "driver: \"MAX14515\"\n").find("codes must be a list"), std::string::npos);
+    EXPECT_NE(fault_of(with(codes, "codes: [ 0, 100, 255 ]\n", "")).find("codes must be a list"),
+              std::string::npos);
+    EXPECT_NE(fault_of(good + "driver: \"MAX14515\"\n").find("volts are for a MAX14574"), std::string::npos);
+    EXPECT_NE(fault_of(codes + "volts: [ 30, 40.0, 50.0 ]\n").find("volts are for a MAX14574"),
+              std::string::npos);
+    EXPECT_NE(fault_of(good + "codes: [ 0, 100, 255 ]\n").find("codes are for a MAX14515"),
+              std::string::npos);
     EXPECT_NE(
         fault_of(good + "driver: \"HV892\"\n").find("driver is \"HV892\" and must be MAX14574 or MAX14515"),
         std::string::npos);
