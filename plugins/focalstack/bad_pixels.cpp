@@ -199,6 +199,8 @@ void BadPixels::look(std::span<const cv::Mat> planes)
     if (planes.size() < fewest_planes)
         return;
     add_suspects(planes);
+    if (suspects_.empty())
+        return;
     const double brightness = mean_of(planes.front());
     for (Suspect &suspect : suspects_)
         judge(suspect, planes, brightness);

@@ -5,24 +5,21 @@ import logging
 import signal
 import sys
 
+from dff_studio import Unusable, missing_typelib
+
 
 def needed():
     """What is not there to be imported, in words for the user; empty if all is."""
     try:
-        import gi
+        import gi  # noqa: F401
         import rerun  # noqa: F401
     except ImportError as error:
         if error.name == 'gi':
             return 'Python has no module gi: install python3-gi, and make the venv with --system-site-packages'
         return (f'Python has no module {error.name}: `python3 -m venv --system-site-packages ~/rerun`, '
                 '`~/rerun/bin/pip install rerun-sdk==0.41.0`, and start dff-rerun by ~/rerun/bin/python3')
-    for name, version, package in (('Gst', '1.0', 'gir1.2-gstreamer-1.0'), ('GstVideo', '1.0', 'gir1.2-gst-plugins-base-1.0'),
-                                   ('GstDff', '1.0', 'the typelib of these plug-ins')):
-        try:
-            gi.require_version(name, version)
-        except ValueError:
-            return f'There is no typelib {name} {version}: install {package}'
-    return ''
+    return missing_typelib({'Gst': ('1.0', 'gir1.2-gstreamer-1.0'), 'GstVideo': ('1.0', 'gir1.2-gst-plugins-base-1.0'),
+                            'GstDff': ('1.0', 'the typelib of these plug-ins')})
 
 
 def hand_over(options):
@@ -51,7 +48,6 @@ def hand_over(options):
 
 def main():
     from dff_rerun import arguments
-    from dff_studio import Unusable
     options = arguments.parse()
     logging.basicConfig(format='dff-rerun: %(message)s')
     if problem := needed():

@@ -6,6 +6,8 @@ import os
 import signal
 import sys
 
+from dff_studio import Unusable, missing_typelib
+
 
 def needed():
     """What is not there to be imported, in words for the user; empty if all is."""
@@ -13,16 +15,11 @@ def needed():
                 'GstWebRTC': ('1.0', 'gir1.2-gst-plugins-bad-1.0'), 'Soup': ('3.0', 'gir1.2-soup-3.0'),
                 'GstDff': ('1.0', 'the typelib of these plug-ins')}
     try:
-        import gi
+        import gi  # noqa: F401
         import numpy  # noqa: F401
     except ImportError as error:
         return f'Python has no module {error.name}: install python3-gi and python3-numpy'
-    for name, (version, package) in packages.items():
-        try:
-            gi.require_version(name, version)
-        except ValueError:
-            return f'There is no typelib {name} {version}: install {package}'
-    return ''
+    return missing_typelib(packages)
 
 
 def serve(options):
@@ -52,7 +49,7 @@ def serve(options):
 
 
 def main():
-    from dff_studio import Unusable, arguments
+    from dff_studio import arguments
     options = arguments.parse()
     logging.basicConfig(format='dff-studio: %(message)s', level=os.environ.get('DFF_STUDIO_LOG', 'WARNING'))
     if problem := needed():
