@@ -298,6 +298,17 @@ class Failing(Program):
             self.assertIn(process.returncode, (130, -signal.SIGINT), errors)
             self.assertEqual([path.name for path in self.out.iterdir()], ['photos'])
 
+    def test_an_interrupt_of_what_is_done_comes_too_late(self):
+        self.write_sweep()
+        result = self.out / 'a.png'
+        with subprocess.Popen([PROGRAM, self.photos, '-o', result], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            while process.poll() is None:
+                if result.exists():
+                    process.send_signal(signal.SIGINT)
+                time.sleep(0.001)
+            self.assertEqual(process.returncode, 0, process.stderr.read())
+        self.assertTrue(result.exists())
+
     def test_help_is_a_manual(self):
         text = self.stack('--help').stdout
         for word in ('ORDER', 'RESULTS', 'MEMORY', 'EXAMPLES', 'EXIT STATUS', '--far-first', '--preview'):

@@ -163,6 +163,18 @@ class Warps(unittest.TestCase):
                     alignment.load(path, 1000, 500, 3)
 
 
+class Interrupts(unittest.TestCase):
+    def setUp(self):
+        engine.start()
+
+    def test_one_inside_a_call_is_one(self):
+        within = SystemError('a call returned a result with an exception set')
+        within.__cause__ = KeyboardInterrupt()
+        for error, becomes in ((KeyboardInterrupt(), KeyboardInterrupt), (within, KeyboardInterrupt), (SystemError('other'), SystemError)):
+            with self.assertRaises(becomes), engine.running('appsrc ! appsink', print):
+                raise error
+
+
 class Writing(unittest.TestCase):
     def test_cameras_that_say_nothing_in_many_words(self):
         """OpenImageIO aborts where it is to write an empty text."""
@@ -247,11 +259,12 @@ class Seams(unittest.TestCase):
             status = pathlib.Path('/proc/self/status').read_text()
             return 1024 * int(status.split('RssAnon:')[1].split()[0])
 
-        self.solve(slabs.slabs_of(MANY, 14), 1)
-        before = resident()
-        for _ in range(2):
+        after = []
+        for _ in range(4):
             self.solve(slabs.slabs_of(MANY, 14), 1)
-        self.assertLess(resident() - before, 16 * 2 ** 20)
+            after.append(resident())
+        # What is kept grows each time; what threads of the device hold for a while does not.
+        self.assertLess(np.diff(after).min(), 8 * 2 ** 20, after)
 
     def test_of_tiles(self):
         self.assert_no_seam(self.solve([(0, MANY)], 2))

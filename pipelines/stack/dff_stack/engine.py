@@ -147,15 +147,20 @@ class Run:
             pass
 
 
+def is_interrupt(error):
+    """Python makes a SystemError of an interrupt that comes inside a call of GStreamer's."""
+    return isinstance(error, KeyboardInterrupt) or (isinstance(error, SystemError) and isinstance(error.__cause__, KeyboardInterrupt))
+
+
 @contextlib.contextmanager
 def running(description, tell):
     run = Run(description, tell)
     try:
         yield run
-    except KeyboardInterrupt:
-        abandoned.append(run)  # to stop it would be to wait for it
-        raise
-    except BaseException:
+    except BaseException as error:
+        if is_interrupt(error):
+            abandoned.append(run)  # to stop it would be to wait for it
+            raise KeyboardInterrupt from error
         run.pipeline.set_state(Gst.State.NULL)
         raise
     run.pipeline.set_state(Gst.State.NULL)

@@ -10,6 +10,8 @@ import numpy as np
 from dff_stack import Unusable, alignment, arguments, batch, depths, engine, listed, memory, order, output, results, slabs, solve, sweep
 from dff_stack.progress import Progress, spoken
 
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
+
 
 def list_pictures(pictures):
     for number, picture in enumerate(pictures, 1):
@@ -81,6 +83,7 @@ def process(options, progress, tell):
         solved = solve.solve(found, warps, work)
         progress.begin('Writing', 1)
         output.Output(options, found, look, solved, warps, pixel_um, said).write(files)
+        no_longer_interruptible()
     progress.end()
     tell(f'== {found.count} pictures in {spoken(progress.seconds())}')
 
@@ -89,10 +92,16 @@ def ended(signum, _):
     raise KeyboardInterrupt
 
 
+def no_longer_interruptible():
+    """From here on the results take their names: an interrupt comes too late, and what is there is told as done."""
+    for number in INTERRUPTS:
+        signal.signal(number, signal.SIG_IGN)
+
+
 def main(arguments_=None):
     sys.stdout.reconfigure(errors='backslashreplace')  # names may hold any bytes
     sys.stderr.reconfigure(errors='backslashreplace')
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in INTERRUPTS:
         signal.signal(number, ended)
     options = arguments.parse(arguments_)
     progress = Progress(quiet=options.quiet)
