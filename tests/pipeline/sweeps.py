@@ -3,23 +3,46 @@
 """Folders of pictures for tests to use."""
 import base64
 import pathlib
+import struct
 import tempfile
 import unittest
+import zlib
 
 import numpy as np
 import OpenImageIO as oiio
 
 SECONDS = 200
 SIDE = 96
-# A JPEG of 64x64 pixels of cyan 0, magenta 40, yellow 70 and black 10 %, which is RGB 230, 138, 69.
+# A JPEG of 64x64 pixels of cyan, magenta, yellow and black, in four fields, and what they are in red, green and blue.
 CMYK = base64.b64decode(
-    '/9j/7gAOQWRvYmUAZAAAAAAA/9sAQwADAgIDAgIDAwMDBAMDBAUIBQUEBAUKBwcGCAwKDAwLCgsLDQ4SEA0OEQ4LCxAWEBETFBUVFQwPFxgWFBgSFBUU'
-    '/8AAFAgAQABABEMRAE0RAFkRAEsRAP/EAB8AAAEFAQEBAQEBAAAAAAAAAAABAgMEBQYHCAkKC//EALUQAAIBAwMCBAMFBQQEAAABfQECAwAEEQUSITFB'
-    'BhNRYQcicRQygZGhCCNCscEVUtHwJDNicoIJChYXGBkaJSYnKCkqNDU2Nzg5OkNERUZHSElKU1RVVldYWVpjZGVmZ2hpanN0dXZ3eHl6g4SFhoeIiYqS'
-    'k5SVlpeYmZqio6Slpqeoqaqys7S1tre4ubrCw8TFxsfIycrS09TV1tfY2drh4uPk5ebn6Onq8fLz9PX29/j5+v/aAA4EQwBNAFkASwAAPwD9U69Dr53r'
-    '9DaKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKK'
-    'KKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKKK'
-    'KKKKKKKKKKKKKKKKKKKKKKK//9k=')
+    '/9j/7gAOQWRvYmUAZAAAAAAA/9sAQwAFAwQEBAMFBAQEBQUFBgcMCAcHBwcPCwsJDBEPEhIRDxERExYcFxMUGhURERghGBodHR8fHxMXIiQiHiQcHh8e/8AAFAgA'
+    'QABABEMRAE0RAFkRAEsRAP/EABgAAQEBAQEAAAAAAAAAAAAAAAAJCAYE/8QAFBABAAAAAAAAAAAAAAAAAAAAAP/aAA4EQwBNAFkASwAAPwDZbZbZbZYAAAAy4nC5'
+    'YAAAAajUedSAAAAMuJwuWAAAAGo1HnUgAAADLicLlgAAABqNR51IAAAAy4nC5YAAABGd625nUgAAALMNMO4THAAAARnZncOpwAAAAsw0w7hMcAAABGdmdw6nAAAA'
+    'CzDTDuExwAAAEZ2Z3DqcAAAALMNMO4THAAAAf//Z')
+CMYK_COLOURS = np.array([[[255, 255, 255], [230, 138, 69]], [[0, 160, 220], [60, 60, 60]]])
+
+
+def chunk(kind, data):
+    """Of a PNG file."""
+    return struct.pack('>I', len(data)) + kind + data + struct.pack('>I', zlib.crc32(kind + data))
+
+
+def exif_saying(orientation):
+    """A block of EXIF that says nothing else."""
+    return b'MM\0*' + struct.pack('>IHHHIHHI', 8, 1, 0x112, 3, 1, orientation, 0, 0)
+
+
+def exif_taken_at(text):
+    """A block of EXIF that says when, as 2026:01:02 03:04:05: its first table says where the second is, and that where the text is."""
+    first, second = struct.pack('>IHHHIII', 8, 1, 0x8769, 4, 1, 26, 0), struct.pack('>HHHIII', 1, 0x9003, 2, 20, 44, 0)
+    return b'MM\0*' + first + second + text.encode() + b'\0'
+
+
+def add_exif(path, block):
+    """To a PNG file, before its pixels, as other programs do."""
+    data = path.read_bytes()
+    at = data.index(b'IDAT') - 4
+    path.write_bytes(data[:at] + chunk(b'eXIf', block) + data[at:])
 
 
 def write(path, pixels, orientation=1, software='camera'):
@@ -31,6 +54,8 @@ def write(path, pixels, orientation=1, software='camera'):
     spec['CompressionQuality'] = 100
     output = oiio.ImageOutput.create(str(path))
     assert output.open(str(path), spec) and output.write_image(pixels) and output.close(), output.geterror()
+    if path.suffix == '.png':
+        add_exif(path, exif_saying(orientation))
 
 
 def flat(value, width=SIDE, height=SIDE, kind=np.uint8):

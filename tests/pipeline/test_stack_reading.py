@@ -14,7 +14,7 @@ import numpy as np
 import OpenImageIO as oiio
 
 from gathering import Sweeps
-from sweeps import CMYK, SIDE, flat, texture, write
+from sweeps import CMYK, CMYK_COLOURS, SIDE, chunk, exif_saying, exif_taken_at, flat, texture, write
 
 from dff_stack import Unusable, ahead, depths, encoding, sweep
 from dff_stack.progress import Progress
@@ -40,6 +40,11 @@ def turned(pixels, orientation):
                                                          7: (1, 1, 1), 8: (1, 0, 1)}[orientation]
     pixels = pixels.transpose(1, 0, 2) if rows_are_columns else pixels
     return pixels[::-1 if from_the_bottom else 1, ::-1 if from_the_right else 1]
+
+
+def replace_exif(path, block):
+    """Of a PNG file that write() made."""
+    path.write_bytes(path.read_bytes().replace(chunk(b'eXIf', exif_saying(1)), chunk(b'eXIf', block)))
 
 
 class Reading(Sweeps):
@@ -92,9 +97,8 @@ class Reading(Sweeps):
     def test_every_kind_keeps_its_colours(self):
         """8 and 16 bits, grey and colours, with and without transparency, stored in the eight ways that EXIF knows."""
         random = np.random.default_rng(5)
-        for ending, kinds, channel_counts, orientations in (('png', ('u1', 'u2'), (1, 2, 3, 4), (1,)), ('jpg', ('u1',), (1, 3), range(1, 9)),
-                                                            ('tif', ('u1', 'u2'), (1, 2, 3, 4), range(1, 9))):
-            for kind, channels, orientation in itertools.product(kinds, channel_counts, orientations):
+        for ending, kinds, channel_counts in (('png', ('u1', 'u2'), (1, 2, 3, 4)), ('jpg', ('u1',), (1, 3)), ('tif', ('u1', 'u2'), (1, 2, 3, 4))):
+            for kind, channels, orientation in itertools.product(kinds, channel_counts, range(1, 9)):
                 tones = np.kron(random.uniform(0.2, 0.9, (5, 4, channels)), np.ones((16, 16, 1)))
                 pixels = np.round(tones * np.iinfo(kind).max).astype(kind)
                 for number in range(2):
@@ -123,11 +127,36 @@ class Reading(Sweeps):
         for orientation, frame in enumerate(self.frames()[1], 1):
             np.testing.assert_array_equal(frame, upright, f'orientation {orientation}')
 
-    def test_cmyk_becomes_rgb(self):
-        for number in range(2):
-            (self.photos / f'{number}.jpg').write_bytes(CMYK)
+    def test_cmyk_becomes_rgb_and_is_turned_upright(self):
+        side = 32
+        for orientation in range(1, 9):
+            block = b'Exif\0\0' + exif_saying(orientation)
+            for number in range(2):
+                (self.photos / f'{number}.jpg').write_bytes(CMYK[:2] + b'\xff\xe1' + struct.pack('>H', len(block) + 2) + block + CMYK[2:])
+            expected = turned(np.kron(CMYK_COLOURS, np.ones((side, side, 1))), orientation)
+            for frame in self.frames()[1]:
+                off = np.abs(frame - expected)[side // 2::side, side // 2::side]
+                self.assertLessEqual(off.max(), 3, f'orientation {orientation}')
+
+    def test_an_orientation_that_is_none_is_that_of_the_file(self):
+        for name in ('a.jpg', 'b.png', 'c.tif'):
+            write(self.photos / name, flat((200, 100, 50), 100, 80), 9)
         for frame in self.frames()[1]:
-            self.assertLessEqual(np.abs(frame - np.array([230, 138, 69])).max(), 3)
+            self.assertEqual(frame.shape, (80, 100, 3))
+
+    def test_what_exif_says_in_png_is_known(self):
+        for number in range(2):
+            path = self.photos / f'{number}.png'
+            write(path, texture(number))
+            replace_exif(path, exif_taken_at(f'2026:01:02 03:04:0{2 - number}'))
+        self.assertEqual(self.names(order_='time'), ['1.png', '0.png'])
+
+    def test_exif_in_png_that_is_broken_is_left_alone(self):
+        for number, block in enumerate((b'', b'MM', b'MM\0*\xff\xff\xff\xff', exif_saying(1)[:-8], exif_saying(1).ljust(100000, b'\0'))):
+            path = self.photos / f'{number}.png'
+            write(path, texture(number))
+            replace_exif(path, block)
+        self.assertEqual(len(self.names()), 5)
 
     def test_transparency_takes_no_colour(self):
         pixels = np.concatenate([flat((200, 100, 50)), flat(64)[:, :, :1]], 2)

@@ -28,13 +28,19 @@ def text_of(spec, name):
         return ''
 
 
+def orientation_of(spec):
+    """EXIF's 1 to 8; from 5 on rows are columns. What is none of them says nothing."""
+    said = spec.get_int_attribute('Orientation', 1)
+    return said if 1 <= said <= 8 else 1
+
+
 class Picture:
     """One page of a file. Nothing of its pixels is kept."""
 
     def __init__(self, path, spec, page=0, pages=1):
         self.path, self.page, self.pages = path, page, pages
         self.spec = spec
-        self.orientation = spec.get_int_attribute('Orientation', 1)  # EXIF's 1 to 8; from 5 on rows are columns
+        self.orientation = orientation_of(spec)
         self.width, self.height = (spec.height, spec.width) if self.orientation >= 5 else (spec.width, spec.height)
         self.grey = spec.nchannels <= 2  # the second is alpha
         self.bits = spec.get_int_attribute('oiio:BitsPerSample', 8 * spec.format.basesize())
