@@ -144,6 +144,7 @@ StackDenoiser::StackDenoiser(std::shared_ptr<Device> device, const StackShape &s
         moved_ = queue_.allocate(tiles);
         sweeps_ = queue_.allocate(tiles);
         held_ = queue_.allocate(tiles);
+        host_sweeps_.resize(tiles);
         for (const Component &component : components)
             components_.push_back(std::make_shared<ComponentState>(queue_, shape_, component, tiles_));
         if (DenoiseStrips::suits(*device_, shape_))
@@ -181,6 +182,7 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
         else
             run_tiles(parameters, changed & ~absent, absent);
         bytes_.download(memory);
+        queue_.commands().enqueueReadBuffer(sweeps_, CL_FALSE, 0, host_sweeps_.size(), host_sweeps_.data());
         times_ = queue_.finish();
     });
     if (has_means_)
@@ -336,7 +338,7 @@ uint32_t StackDenoiser::learned_step() const
     return std::max(static_cast<uint32_t>(tiles_a_plane()) / enough_tiles, 1U);
 }
 
-/* The tiles of one plane. */
+/* The tiles of one plane; waits for them. */
 void StackDenoiser::read_tiles()
 {
     const size_t across = static_cast<size_t>(tiles_.s[0]), down = static_cast<size_t>(tiles_.s[1]);
@@ -348,20 +350,19 @@ void StackDenoiser::read_tiles()
                                             part->host_tiles.size() * sizeof(TileDifference),
                                             part->host_tiles.data());
     }
+    queue_.commands().finish();
 }
 
-/* What each of them is the mean of; waits for both. */
-std::vector<uint8_t> StackDenoiser::read_sweeps()
+/* What each of them was the mean of when the last stack was done. */
+std::vector<uint8_t> StackDenoiser::learned_sweeps() const
 {
-    const size_t across = static_cast<size_t>(tiles_.s[0]), down = static_cast<size_t>(tiles_.s[1]);
-    const size_t step = strips_ ? learned_step() : 1, rows = (down + step - 1) / step;
-    std::vector<uint8_t> sweeps(tiles_a_plane());
-    queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, tiles_a_plane() * learned_plane_, sweeps.size(),
-                                        sweeps.data());
-    for (size_t i = 1; i < rows; i++)
-        std::copy_n(sweeps.begin() + static_cast<std::ptrdiff_t>(i * step * across), across,
-                    sweeps.begin() + static_cast<std::ptrdiff_t>(i * across));
-    sweeps.resize(rows * across);
+    const size_t across = static_cast<size_t>(tiles_.s[0]);
+    const size_t step = strips_ ? learned_step() : 1;
+    const auto plane = std::span(host_sweeps_).subspan(tiles_a_plane() * learned_plane_, tiles_a_plane());
+    std::vector<uint8_t> sweeps;
+    for (size_t first = 0; first < plane.size(); first += step * across)
+        sweeps.insert(sweeps.end(), plane.begin() + static_cast<std::ptrdiff_t>(first),
+                      plane.begin() + static_cast<std::ptrdiff_t>(first + across));
     return sweeps;
 }
 
@@ -376,7 +377,7 @@ bool StackDenoiser::all_moved() const
 void StackDenoiser::learn_noise()
 {
     read_tiles();
-    const std::vector<uint8_t> sweeps = read_sweeps();
+    const std::vector<uint8_t> sweeps = learned_sweeps();
     if (all_moved())
         return;
     for (const auto &part : components_) {
@@ -399,7 +400,7 @@ void StackDenoiser::learn_noise()
  * stays there, less and less, down to 1 / (2 k - 1). Of the plane that was learned from. */
 void StackDenoiser::tell_noise_left(uint32_t frames)
 {
-    const std::vector<uint8_t> sweeps = read_sweeps();
+    const std::vector<uint8_t> sweeps = learned_sweeps();
     const ComponentState &luma = *components_.front();
     kept_sweeps_ = std::min(kept_sweeps_ + 1, frames);
     const double share = 1.0 / kept_sweeps_;
@@ -419,7 +420,7 @@ void StackDenoiser::tell_noise_left(uint32_t frames)
     left_ = luma_part(shape_.format) * std::sqrt(*middle + rounding) / unit;
 }
 
-DenoiseReport StackDenoiser::report()
+DenoiseReport StackDenoiser::report() const
 {
     DenoiseReport report;
     for (const auto &part : components_) {
@@ -428,11 +429,8 @@ DenoiseReport StackDenoiser::report()
     }
     report.left = left_;
     report.sample_unit = sample_bytes(shape_.format) == 2 ? 1.0 / 256.0 : 1.0;
-    std::vector<uint8_t> sweeps(tiles_a_plane() * shape_.planes);
-    if (has_means_)
-        queue_.commands().enqueueReadBuffer(sweeps_, CL_TRUE, 0, sweeps.size(), sweeps.data());
-    report.mean_sweeps =
-        std::accumulate(sweeps.begin(), sweeps.end(), 0.0) / static_cast<double>(sweeps.size());
+    const auto sum = std::accumulate(host_sweeps_.begin(), host_sweeps_.end(), uint64_t{0});
+    report.mean_sweeps = static_cast<double>(sum) / static_cast<double>(host_sweeps_.size());
     return report;
 }
 

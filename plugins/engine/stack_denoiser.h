@@ -52,8 +52,8 @@ public:
     /* The next stack shows another scene: nothing before it is averaged with it. */
     void forget() { has_means_ = false; }
 
-    /* Of the last stack. Reads back from the device. */
-    DenoiseReport report();
+    /* Of the last stack. */
+    DenoiseReport report() const;
 
     StageTimes times() const { return times_; }
 
@@ -72,7 +72,7 @@ private:
     void run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent);
     uint32_t learned_step() const;
     void read_tiles();
-    std::vector<uint8_t> read_sweeps();
+    std::vector<uint8_t> learned_sweeps() const;
     bool all_moved() const;
     void learn_noise();
     void tell_noise_left(uint32_t frames);
@@ -89,7 +89,8 @@ private:
     cl_int run_;    /* tiles a work-item */
     HostBuffer bytes_;
     cl::Buffer moved_, sweeps_, held_;
-    bool holds_ = true; /* held_ has anything but 0 in it */
+    std::vector<uint8_t> host_sweeps_; /* sweeps_, as the last stack left it */
+    bool holds_ = true;                /* held_ has anything but 0 in it */
     std::vector<std::shared_ptr<ComponentState>> components_;
     std::optional<DenoiseStrips> strips_; /* on CPUs */
     PlaneTracker tracker_;

@@ -50,24 +50,51 @@ int inside(int at, int length)
     return at < 0 ? -at : at >= length ? 2 * length - 2 - at : at;
 }
 
-/* Sums of the differences of three rows, for the pixels of `where` and one on each side. */
-void sum_rows(const ComparedChannel &channel, const cv::Rect &where, int y, std::vector<float> &sums)
-{
-    const int rows = channel.picture.rows, cols = channel.picture.cols;
-    const float *a[box], *b[box];
-    for (int i = 0; i < box; i++) {
-        a[i] = channel.picture[inside(y + i - 1, rows)];
-        b[i] = channel.before[inside(y + i - 1, rows)];
+/* The differences of the rows that a row's means are made of, for the pixels of `where` and one on each side:
+ * each row's are found once. */
+class DifferenceRows {
+public:
+    DifferenceRows(const ComparedChannel &channel, const cv::Rect &where) : channel_(channel), where_(where)
+    {
+        for (std::vector<float> &row : rows_)
+            row.resize(static_cast<size_t>(where.width) + 2);
+        subtract(where.y - 1);
+        subtract(where.y);
     }
-    const int first = std::max(where.x - 1, 0), end = std::min(where.x + where.width + 1, cols);
-    float *sum = sums.data() + 1 - where.x;
-    for (int x = first; x < end; x++)
-        sum[x] = (a[0][x] - b[0][x]) + (a[1][x] - b[1][x]) + (a[2][x] - b[2][x]);
-    if (where.x == 0)
-        sum[-1] = sum[inside(-1, cols)];
-    if (end == where.x + where.width)
-        sum[end] = sum[inside(cols, cols)];
-}
+
+    /* Sums over three rows. After those of row y - 1, or of where.y first. */
+    void sum_around(int y, std::vector<float> &sums)
+    {
+        subtract(y + 1);
+        const float *above = row(y - 1).data(), *here = row(y).data(), *below = row(y + 1).data();
+        for (size_t x = 0; x < sums.size(); x++)
+            sums[x] = above[x] + here[x] + below[x];
+    }
+
+private:
+    std::vector<float> &row(int y)
+    {
+        return rows_[static_cast<size_t>(inside(y, channel_.picture.rows) % box)];
+    }
+
+    void subtract(int y)
+    {
+        const int at = inside(y, channel_.picture.rows), cols = channel_.picture.cols;
+        const float *picture = channel_.picture[at], *before = channel_.before[at];
+        const int first = std::max(where_.x - 1, 0), end = std::min(where_.x + where_.width + 1, cols);
+        float *difference = row(y).data() + 1 - where_.x;
+        for (int x = first; x < end; x++)
+            difference[x] = picture[x] - before[x];
+        if (where_.x == 0)
+            difference[-1] = difference[inside(-1, cols)];
+        if (end == where_.x + where_.width)
+            difference[end] = difference[inside(cols, cols)];
+    }
+
+    const ComparedChannel &channel_;
+    const cv::Rect where_;
+    std::array<std::vector<float>, box> rows_; /* row y is the one of y modulo 3 */
+};
 
 } // namespace
 
@@ -78,10 +105,11 @@ cv::Rect mark_excess(const ComparedChannel &channel, const cv::Mat1b *sweeps, fl
     const float least_factor = sweeps ? of_sweeps.back() : of_sweeps[1];
     const Line line = line_below(channel.noise);
     const float at_black = line.at_black * least_factor + margin, slope = line.slope * least_factor;
+    DifferenceRows rows(channel, where);
     std::vector<float> sums(static_cast<size_t>(where.width) + 2), means(static_cast<size_t>(where.width));
     int left = where.x + where.width, right = where.x, top = where.y + where.height, bottom = where.y;
     for (int y = where.y; y < where.y + where.height; y++) {
-        sum_rows(channel, where, y, sums);
+        rows.sum_around(y, sums);
         for (size_t x = 0; x < means.size(); x++)
             means[x] = std::fabs(sums[x] + sums[x + 1] + sums[x + 2]) * ninth;
         const float *before = channel.before[y] + where.x;

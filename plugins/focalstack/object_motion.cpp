@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/object_motion.h"
 
+#include "focalstack/in_parallel.h"
 #include "focalstack/velocity_refinement.h"
 
 #include <algorithm>
@@ -75,16 +76,15 @@ void find_flow(const SmallStack &sweep, const Silhouettes &silhouettes, const cv
                cv::Mat2f &velocity, cv::Mat1f &apart)
 {
     const int middle = static_cast<int>(sweep.planes()) / 2;
-    const auto flow = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_FAST);
-    flow->setFinestScale(0);
     const cv::Mat1b from = flow_picture(sweep, silhouettes, static_cast<unsigned>(middle), where);
-    std::vector<cv::Mat2f> flows;
-    for (const int step : steps) {
-        const auto z = static_cast<unsigned>(middle + step);
-        cv::Mat2f found;
-        flow->calc(from, flow_picture(sweep, silhouettes, z, where), found);
-        flows.emplace_back(found / step);
-    }
+    std::vector<cv::Mat2f> flows(std::size(steps));
+    in_parallel(flows.size(), [&](unsigned i) {
+        const auto z = static_cast<unsigned>(middle + steps[i]);
+        const auto flow = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_FAST);
+        flow->setFinestScale(0);
+        flow->calc(from, flow_picture(sweep, silhouettes, z, where), flows[i]);
+        flows[i] /= steps[i];
+    });
     cv::Mat2f mean = cv::Mat2f::zeros(from.size());
     for (const cv::Mat2f &of : flows)
         mean += of / static_cast<double>(flows.size());
@@ -115,8 +115,8 @@ void spread_velocity(const cv::Mat1b &middle, const cv::Mat1f &apart, cv::Mat2f 
             weighted(y, x) = {weight * v[0], weight * v[1], weight};
         }
     cv::Mat near, far;
-    soften(weighted, spread, near);
-    soften(weighted, 3.0 * spread, far);
+    in_parallel(2,
+                [&](unsigned i) { soften(weighted, i == 0 ? spread : 3.0 * spread, i == 0 ? near : far); });
     for (int y = 0; y < velocity.rows; y++)
         for (int x = 0; x < velocity.cols; x++) {
             const cv::Vec3f sum = near.at<cv::Vec3f>(y, x) + far_weight * far.at<cv::Vec3f>(y, x);
@@ -128,15 +128,17 @@ void spread_velocity(const cv::Mat1b &middle, const cv::Mat1f &apart, cv::Mat2f 
 cv::Mat1f planes_on_path(const Silhouettes &silhouettes, const cv::Rect &where, const cv::Mat2f &velocity)
 {
     const auto planes = static_cast<unsigned>(silhouettes.tight.size());
-    cv::Mat2f path;
-    cv::Mat1f count = cv::Mat1f::zeros(velocity.size()), found;
-    for (unsigned z = 0; z < planes; z++) {
+    std::vector<cv::Mat1f> found(planes);
+    in_parallel(planes, [&](unsigned z) {
+        cv::Mat2f path;
         path_through(velocity, z - middle_of_sweep(planes), path);
         cv::Mat1f silhouette;
         silhouettes.tight[z](where).convertTo(silhouette, CV_32F);
-        cv::remap(silhouette, found, path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-        count += found;
-    }
+        cv::remap(silhouette, found[z], path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    });
+    cv::Mat1f count = cv::Mat1f::zeros(velocity.size());
+    for (const cv::Mat1f &of_plane : found)
+        count += of_plane;
     return count;
 }
 

@@ -2,11 +2,11 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/object_rims.h"
 
+#include "focalstack/in_parallel.h"
 #include "focalstack/velocity_refinement.h"
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace dff {
@@ -56,20 +56,16 @@ MovedPlanes move_planes(const SmallStack &sweep, const StillBackground &backgrou
     MovedPlanes moved;
     moved.pictures.resize(planes);
     moved.behind.resize(planes);
-    cv::parallel_for_(cv::Range(0, static_cast<int>(planes)), [&](const cv::Range &range) {
+    in_parallel(planes, [&](unsigned z) {
         cv::Mat2f path;
-        for (int i = range.start; i < range.end; i++) {
-            const auto z = static_cast<unsigned>(i);
-            path_through(velocity, z - (planes - 1) / 2.0, path);
-            for (unsigned c = 0; c < channels; c++) {
-                cv::Mat1f picture, behind;
-                cv::remap(sweep.picture(z, c)(where), picture, path, {}, cv::INTER_LINEAR,
-                          cv::BORDER_REPLICATE);
-                cv::remap(background.plane(z, c)(where), behind, path, {}, cv::INTER_LINEAR,
-                          cv::BORDER_REPLICATE);
-                moved.pictures[z].push_back(picture);
-                moved.behind[z].push_back(behind);
-            }
+        path_through(velocity, z - (planes - 1) / 2.0, path);
+        for (unsigned c = 0; c < channels; c++) {
+            cv::Mat1f picture, behind;
+            cv::remap(sweep.picture(z, c)(where), picture, path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+            cv::remap(background.plane(z, c)(where), behind, path, {}, cv::INTER_LINEAR,
+                      cv::BORDER_REPLICATE);
+            moved.pictures[z].push_back(picture);
+            moved.behind[z].push_back(behind);
         }
     });
     for (unsigned c = 0; c < channels; c++) {
@@ -85,9 +81,13 @@ Outlines outlines_of(const cv::Mat1b &inside)
 {
     Outlines outlines;
     cv::Mat1f outside;
-    cv::distanceTransform(inside, outlines.depth, cv::DIST_L2, cv::DIST_MASK_5);
-    cv::distanceTransform(inside == 0, outside, outlines.object, cv::DIST_L2, cv::DIST_MASK_5,
-                          cv::DIST_LABEL_CCOMP);
+    in_parallel(2, [&](unsigned i) {
+        if (i == 0)
+            cv::distanceTransform(inside, outlines.depth, cv::DIST_L2, cv::DIST_MASK_5);
+        else
+            cv::distanceTransform(inside == 0, outside, outlines.object, cv::DIST_L2, cv::DIST_MASK_5,
+                                  cv::DIST_LABEL_CCOMP);
+    });
     for (int y = 0; y < inside.rows; y++)
         for (int x = 0; x < inside.cols; x++) {
             float &depth = outlines.depth(y, x);
@@ -108,10 +108,17 @@ std::vector<cv::Mat1f> own_colours(const MovedPlanes &moved, const Outlines &out
         soften(of, 4.0 * spread, far);
         return cv::Mat1f(near + 0.01 * far);
     };
-    const cv::Mat1f weights = spread_out(weight) + 1e-6;
-    std::vector<cv::Mat1f> colours;
-    for (const cv::Mat1f &mean : moved.means)
-        colours.push_back(spread_out(mean.mul(weight)) / weights);
+    const size_t channels = moved.means.size();
+    cv::Mat1f weights;
+    std::vector<cv::Mat1f> colours(channels);
+    in_parallel(channels + 1, [&](unsigned i) {
+        if (i < channels)
+            colours[i] = spread_out(moved.means[i].mul(weight));
+        else
+            weights = cv::Mat1f(spread_out(weight) + 1e-6);
+    });
+    for (cv::Mat1f &colour : colours)
+        colour /= weights;
     return colours;
 }
 
@@ -300,11 +307,8 @@ ObjectRims find_rims(const SmallStack &sweep, const StillBackground &background,
     rims.noisy.resize(sweep.planes());
     const std::vector<Surface> surfaces = surfaces_of(moved, outlines, noise);
     std::vector<std::vector<std::array<float, distances>>> shares(sweep.planes());
-    cv::parallel_for_(cv::Range(0, static_cast<int>(sweep.planes())), [&](const cv::Range &range) {
-        for (int z = range.start; z < range.end; z++)
-            shares[static_cast<size_t>(z)] =
-                find_in_plane(moved, outlines, surfaces, static_cast<unsigned>(z), rims);
-    });
+    in_parallel(sweep.planes(),
+                [&](unsigned z) { shares[z] = find_in_plane(moved, outlines, surfaces, z, rims); });
     move_outlines(shares, outlines, surfaces, objects);
     rims.plain.create(where.size());
     for (int y = 0; y < where.height; y++)

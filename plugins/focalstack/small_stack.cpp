@@ -2,8 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/small_stack.h"
 
+#include "focalstack/in_parallel.h"
+
 #include <algorithm>
-#include <opencv2/core/utility.hpp>
 
 namespace dff {
 
@@ -119,10 +120,10 @@ void take_means(const cv::Mat &picture, int channel, int side, float scale, cv::
 
 } // namespace
 
-std::vector<std::vector<cv::Mat>> pictures_of(const StackView &view, std::span<std::byte> memory)
+StackPictureViews pictures_of(const StackView &view, std::span<std::byte> memory)
 {
     const auto components = view.shape.components();
-    std::vector<std::vector<cv::Mat>> pictures(view.shape.planes);
+    StackPictureViews pictures(view.shape.planes);
     for (uint32_t z = 0; z < view.shape.planes; z++)
         for (size_t c = 0; c < components.size(); c++) {
             const RowLayout &rows = view.layout[c * view.shape.planes + z];
@@ -158,27 +159,31 @@ double SmallStack::samples(unsigned channel) const
     return side * side;
 }
 
-void SmallStack::take(const std::vector<std::vector<cv::Mat>> &pictures)
+void SmallStack::take(const StackPictureViews &pictures)
 {
-    cv::parallel_for_(cv::Range(0, static_cast<int>(shape_.planes)), [&](const cv::Range &range) {
-        for (int z = range.start; z < range.end; z++)
-            for (unsigned i = 0, first = 0; i < channels(); i++) {
-                const size_t c = component_of_[i];
-                first = i > 0 && component_of_[i - 1] == c ? first : i;
-                const cv::Mat &picture = pictures[static_cast<size_t>(z)][c];
-                const int side = factor_ / static_cast<int>(components_[c].subsampling);
-                const auto scale = static_cast<float>(1.0 / samples(i));
-                cv::Mat1f &means = pictures_[static_cast<size_t>(z)][i];
-                if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 4)
-                    take_plain_means<4>(picture, scale, means);
-                else if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 2)
-                    take_plain_means<2>(picture, scale, means);
-                else if (components_[c].sample_bytes == 2)
-                    take_means<uint16_t>(picture, static_cast<int>(i - first), side, scale / 256.0F, means);
-                else
-                    take_means<uint8_t>(picture, static_cast<int>(i - first), side, scale, means);
-            }
+    in_parallel(planes(), [&](unsigned z) {
+        for (unsigned channel = 0; channel < channels(); channel++)
+            take(pictures, z, channel, {0, size_.height});
     });
+}
+
+void SmallStack::take(const StackPictureViews &pictures, unsigned z, unsigned channel, const cv::Range &rows)
+{
+    const size_t c = component_of_[channel];
+    const auto first = std::find(component_of_.begin(), component_of_.end(), c) - component_of_.begin();
+    const int of_component = static_cast<int>(channel) - static_cast<int>(first);
+    const int side = factor_ / static_cast<int>(components_[c].subsampling);
+    const cv::Mat picture = pictures[z][c].rowRange(rows.start * side, rows.end * side);
+    const auto scale = static_cast<float>(1.0 / samples(channel));
+    cv::Mat1f means = pictures_[z][channel].rowRange(rows);
+    if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 4)
+        take_plain_means<4>(picture, scale, means);
+    else if (components_[c].sample_bytes == 1 && picture.channels() == 1 && side == 2)
+        take_plain_means<2>(picture, scale, means);
+    else if (components_[c].sample_bytes == 2)
+        take_means<uint16_t>(picture, of_component, side, scale / 256.0F, means);
+    else
+        take_means<uint8_t>(picture, of_component, side, scale, means);
 }
 
 cv::Mat1f SmallStack::luma(unsigned z) const

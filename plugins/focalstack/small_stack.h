@@ -10,7 +10,8 @@ namespace dff {
 
 /* The pictures of a stack as OpenCV sees them, without a copy: [z][component]. What is done to them is done
  * to `memory`, the bytes of `view`. */
-std::vector<std::vector<cv::Mat>> pictures_of(const StackView &view, std::span<std::byte> memory);
+using StackPictureViews = std::vector<std::vector<cv::Mat>>;
+StackPictureViews pictures_of(const StackView &view, std::span<std::byte> memory);
 
 /* The colour channels of a component that show something: all but the fourth of RGBx. */
 int shown_channels(const Component &component);
@@ -24,7 +25,9 @@ public:
 
     explicit SmallStack(const StackShape &shape);
 
-    void take(const std::vector<std::vector<cv::Mat>> &pictures);
+    /* All of it, or some rows of one channel of one plane. */
+    void take(const StackPictureViews &pictures);
+    void take(const StackPictureViews &pictures, unsigned z, unsigned channel, const cv::Range &rows);
 
     int factor() const { return factor_; }
     cv::Size size() const { return size_; }

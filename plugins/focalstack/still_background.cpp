@@ -2,11 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/still_background.h"
 
+#include "focalstack/in_parallel.h"
 #include "focalstack/noise_excess.h"
 
 #include <algorithm>
-#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace dff {
 
@@ -34,15 +35,6 @@ cv::Rect widened(const cv::Rect &where, int by, const cv::Size &size)
         return {};
     return cv::Rect(where.x - by, where.y - by, where.width + 2 * by, where.height + 2 * by) &
            cv::Rect({}, size);
-}
-
-/* The planes are apart from each other. */
-template <typename Work> void for_each_plane(unsigned planes, const Work &work)
-{
-    cv::parallel_for_(cv::Range(0, static_cast<int>(planes)), [&](const cv::Range &range) {
-        for (int z = range.start; z < range.end; z++)
-            work(static_cast<unsigned>(z));
-    });
 }
 
 /* What one row shows becomes background, where nothing differs. */
@@ -95,14 +87,23 @@ void StillBackground::clear(const SmallStack &sweep)
     found_.is_whole = false;
 }
 
-/* The tight silhouette of a plane. */
-void StillBackground::find_certain(const SmallStack &sweep, unsigned z, const Noise &noise)
+/* The tight silhouette of a plane, whose pictures are taken and compared while they are in the cache. */
+void StillBackground::find_certain(const StackPictureViews &pictures, SmallStack &sweep, unsigned z,
+                                   const Noise &noise)
 {
+    constexpr int band = 32; /* rows */
     Plane &plane = planes_[z];
+    const cv::Size size = sweep.size();
     cv::Rect set;
     for (unsigned i = 0; i < sweep.channels(); i++)
-        set |= mark_excess({sweep.picture(z, i), plane.background[i], noise[i]}, &plane.sweeps, certain,
-                           {{}, sweep.size()}, plane.raw);
+        for (int taken = 0, compared = 0; taken < size.height;) {
+            const int first = std::exchange(taken, std::min(taken + band, size.height));
+            sweep.take(pictures, z, i, {first, taken});
+            /* A row is compared with those around it. */
+            const int begin = std::exchange(compared, taken < size.height ? taken - 1 : taken);
+            set |= mark_excess({sweep.picture(z, i), plane.background[i], noise[i]}, &plane.sweeps, certain,
+                               {0, begin, size.width, compared - begin}, plane.raw);
+        }
     plane.outline = {};
     if (set.empty())
         return;
@@ -232,22 +233,23 @@ void StillBackground::learn(const SmallStack &sweep, unsigned z, const cv::Mat1f
     found_.known[z] = plane.known;
 }
 
-const Silhouettes &StillBackground::follow(const SmallStack &sweep, const SmallStack &last,
-                                           const Noise &noise)
+const Silhouettes &StillBackground::follow(const StackPictureViews &pictures, SmallStack &sweep,
+                                           const SmallStack &last, const Noise &noise)
 {
     clear(sweep);
     if (planes_.empty()) {
+        sweep.take(pictures);
         begin(sweep);
         was_whole_ = false;
         return found_;
     }
-    for_each_plane(sweep.planes(), [&](unsigned z) { find_certain(sweep, z, noise); });
+    in_parallel(sweep.planes(), [&](unsigned z) { find_certain(pictures, sweep, z, noise); });
     for (const Plane &plane : planes_)
         found_.where |= plane.outline;
     found_.where = widened(found_.where, reach, sweep.size());
     if (!found_.where.empty()) {
         const cv::Mat1b near = near_objects();
-        for_each_plane(sweep.planes(), [&](unsigned z) {
+        in_parallel(sweep.planes(), [&](unsigned z) {
             find_perhaps(sweep, z, noise, near);
             look_for_steady(sweep, last, z, noise);
         });
@@ -262,7 +264,7 @@ const Silhouettes &StillBackground::follow(const SmallStack &sweep, const SmallS
     constexpr int around = 4; /* pixels that the mean of halted_sweeps() looks at */
     const cv::Rect halt_where = widened(found_.where | last_where_, around, sweep.size());
     const cv::Mat1f halt = halt_where.empty() ? cv::Mat1f() : halted_sweeps(halt_where);
-    for_each_plane(sweep.planes(), [&](unsigned z) { learn(sweep, z, halt, halt_where); });
+    in_parallel(sweep.planes(), [&](unsigned z) { learn(sweep, z, halt, halt_where); });
     last_where_ = found_.where;
     return found_;
 }

@@ -30,9 +30,10 @@ public:
     /* Noise of a small picture's pixels at 256 brightnesses, as a standard deviation, for each channel. */
     using Noise = std::vector<std::array<float, 256>>;
 
-    /* Compares the sweep with the ones before and learns from it; `last` is the sweep that it was given
-     * before. What it gives is good until the next sweep. */
-    const Silhouettes &follow(const SmallStack &sweep, const SmallStack &last, const Noise &noise);
+    /* Takes the pictures of a stack into `sweep`, compares it with the ones before and learns from it; `last`
+     * is the sweep that it was given before. What it gives is good until the next sweep. */
+    const Silhouettes &follow(const StackPictureViews &pictures, SmallStack &sweep, const SmallStack &last,
+                              const Noise &noise);
 
     void forget() { planes_.clear(); }
 
@@ -54,7 +55,7 @@ private:
 
     void begin(const SmallStack &sweep);
     void clear(const SmallStack &sweep);
-    void find_certain(const SmallStack &sweep, unsigned z, const Noise &noise);
+    void find_certain(const StackPictureViews &pictures, SmallStack &sweep, unsigned z, const Noise &noise);
     void find_perhaps(const SmallStack &sweep, unsigned z, const Noise &noise, const cv::Mat1b &near);
     void look_for_steady(const SmallStack &sweep, const SmallStack &last, unsigned z, const Noise &noise);
     cv::Mat1b near_objects() const;

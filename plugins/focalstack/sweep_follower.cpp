@@ -2,9 +2,12 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/sweep_follower.h"
 
+#include "focalstack/in_parallel.h"
+
+#include <algorithm>
 #include <cmath>
-#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,30 +49,42 @@ cv::Mat1b drawn_part(const ObjectMotion &motion)
     return drawn;
 }
 
-/* The plane's picture where its objects are in the middle of the sweep, `planes` before or after it: what
- * they show, or what is behind them. */
-cv::Mat moved_picture(const cv::Mat &picture, const ObjectsOfComponent &objects, double farthest,
-                      double planes, int interpolation)
-{
-    const int reach = static_cast<int>(std::ceil(farthest * objects.side * std::fabs(planes))) + 2;
-    cv::Rect from = objects.where;
-    from -= cv::Point(reach, reach);
-    from += cv::Size(2 * reach, 2 * reach);
-    from &= cv::Rect({}, picture.size());
-    cv::Mat2f path(objects.where.size());
-    const auto time = static_cast<float>(planes);
-    for (int y = 0; y < path.rows; y++) {
-        const cv::Vec2f *velocity = objects.velocity[y];
-        cv::Vec2f *out = path[y];
-        const auto row = static_cast<float>(y + objects.where.y - from.y);
-        const auto first = static_cast<float>(objects.where.x - from.x);
-        for (int x = 0; x < path.cols; x++)
-            out[x] = {first + static_cast<float>(x) + time * velocity[x][0], row + time * velocity[x][1]};
+/* Where the objects of a component are in a plane, `planes` before or after the middle of the sweep. */
+class ObjectPath {
+public:
+    ObjectPath(const ObjectsOfComponent &objects, double farthest, double planes, const cv::Size &size)
+        : from_(objects.where)
+    {
+        const int reach = static_cast<int>(std::ceil(farthest * objects.side * std::fabs(planes))) + 2;
+        from_ -= cv::Point(reach, reach);
+        from_ += cv::Size(2 * reach, 2 * reach);
+        from_ &= cv::Rect({}, size);
+        cv::Mat2f path(objects.where.size());
+        const auto time = static_cast<float>(planes);
+        for (int y = 0; y < path.rows; y++) {
+            const cv::Vec2f *velocity = objects.velocity[y];
+            cv::Vec2f *out = path[y];
+            const auto row = static_cast<float>(y + objects.where.y - from_.y);
+            const auto first = static_cast<float>(objects.where.x - from_.x);
+            for (int x = 0; x < path.cols; x++)
+                out[x] = {first + static_cast<float>(x) + time * velocity[x][0], row + time * velocity[x][1]};
+        }
+        cv::convertMaps(path, {}, pixels_, parts_, CV_16SC2);
     }
-    cv::Mat moved;
-    cv::remap(picture(from), moved, path, {}, interpolation, cv::BORDER_REFLECT);
-    return moved;
-}
+
+    /* The plane's picture where they are in the middle of the sweep: what they show, or what is behind them.
+     */
+    cv::Mat moved(const cv::Mat &picture) const
+    {
+        cv::Mat moved;
+        cv::remap(picture(from_), moved, pixels_, parts_, cv::INTER_LINEAR, cv::BORDER_REFLECT);
+        return moved;
+    }
+
+private:
+    cv::Rect from_; /* pixels of the picture that are needed */
+    cv::Mat pixels_, parts_;
+};
 
 } // namespace
 
@@ -102,11 +117,16 @@ std::span<const uint8_t> SweepFollower::look(const StackView &view, std::span<st
                                              const DenoiseReport &noise)
 {
     std::swap(small_, last_);
-    small_.take(pictures_of(view, memory));
     noise_ = small_noise(noise);
-    background_.follow(small_, last_, noise_);
+    background_.follow(pictures_of(view, memory), small_, last_, noise_);
     hold_tiles();
     return holds_ ? std::span<const uint8_t>(held_) : std::span<const uint8_t>();
+}
+
+cv::Size SweepFollower::tiles() const
+{
+    return {static_cast<int>(shape_.width + tile_pixels - 1) / tile_pixels,
+            static_cast<int>(shape_.height + tile_pixels - 1) / tile_pixels};
 }
 
 /* A tile is kept if any of its pixels or of its neighbours' is: what comes near there next sweep must not
@@ -114,9 +134,6 @@ std::span<const uint8_t> SweepFollower::look(const StackView &view, std::span<st
 void SweepFollower::hold_tiles()
 {
     const Silhouettes &found = background_.found();
-    const int across = static_cast<int>(shape_.width + tile_pixels - 1) / tile_pixels;
-    const int down = static_cast<int>(shape_.height + tile_pixels - 1) / tile_pixels;
-    const auto tile_of = [this](int at) { return at * small_.factor() / tile_pixels; };
     filled_.resize(shape_.planes);
     for (cv::Mat1b &filled : filled_) {
         if (filled.size() != small_.size())
@@ -130,25 +147,34 @@ void SweepFollower::hold_tiles()
     if (found.where.empty() || found.is_whole)
         return;
 
-    held_.resize(static_cast<size_t>(across * down) * shape_.planes);
+    held_.resize(static_cast<size_t>(tiles().area()) * shape_.planes);
     const int around = 2 * std::max(tile_pixels / small_.factor(), 1); /* the neighbours' pixels */
     filled_where_ = cv::Rect(found.where.x - around, found.where.y - around, found.where.width + 2 * around,
                              found.where.height + 2 * around) &
                     cv::Rect({}, small_.size());
-    for (unsigned z = 0; z < shape_.planes; z++) {
-        const cv::Mat1b held = found.held[z](found.where);
-        if (cv::countNonZero(held) == 0)
-            continue;
-        holds_ = true;
-        cv::Mat1b plane(down, across, held_.data() + z * static_cast<size_t>(across * down));
-        for (int y = 0; y < held.rows; y++)
-            for (int x = 0; x < held.cols; x++)
-                plane(tile_of(y + found.where.y), tile_of(x + found.where.x)) |= held(y, x);
-        cv::dilate(plane, plane, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
-        for (int y = filled_where_.y; y < filled_where_.y + filled_where_.height; y++)
-            for (int x = filled_where_.x; x < filled_where_.x + filled_where_.width; x++)
-                filled_[z](y, x) = found.known[z](y, x) & plane(tile_of(y), tile_of(x));
-    }
+    std::vector<uint8_t> is_any(shape_.planes);
+    in_parallel(shape_.planes, [&](unsigned z) { is_any[z] = hold_tiles(z); });
+    holds_ = std::ranges::count(is_any, 0) < static_cast<std::ptrdiff_t>(shape_.planes);
+}
+
+/* Gives whether there are any in plane z. */
+bool SweepFollower::hold_tiles(unsigned z)
+{
+    const Silhouettes &found = background_.found();
+    const cv::Mat1b held = found.held[z](found.where);
+    if (cv::countNonZero(held) == 0)
+        return false;
+    const auto tile_of = [this](int at) { return at * small_.factor() / tile_pixels; };
+    cv::Mat1b plane(tiles().height, tiles().width,
+                    held_.data() + size_t{z} * static_cast<size_t>(tiles().area()));
+    for (int y = 0; y < held.rows; y++)
+        for (int x = 0; x < held.cols; x++)
+            plane(tile_of(y + found.where.y), tile_of(x + found.where.x)) |= held(y, x);
+    cv::dilate(plane, plane, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+    for (int y = filled_where_.y; y < filled_where_.y + filled_where_.height; y++)
+        for (int x = filled_where_.x; x < filled_where_.x + filled_where_.width; x++)
+            filled_[z](y, x) = found.known[z](y, x) & plane(tile_of(y), tile_of(x));
+    return true;
 }
 
 /* What an object of the small pictures is in a component's. */
@@ -195,17 +221,18 @@ SweepFollower::Fill SweepFollower::fill_of(size_t component, unsigned z, const O
 void SweepFollower::compose(const cv::Mat &picture, unsigned z, const ObjectMotion &motion,
                             const ObjectsOfComponent &objects, Fill &fill) const
 {
-    const double planes = z - middle_of_sweep(shape_.planes);
+    std::optional<ObjectPath> path;
     cv::Mat moved;
-    if (!objects.where.empty())
-        moved = moved_picture(picture, objects, motion.farthest, planes, cv::INTER_LINEAR);
+    if (!objects.where.empty()) {
+        path.emplace(objects, motion.farthest, z - middle_of_sweep(shape_.planes), picture.size());
+        moved = path->moved(picture);
+    }
     if (!fill.where.empty())
         blend(picture(fill.where), cv::Mat(fill.where.size(), picture.type(), fill.background.samples.data()),
               fill.share);
-    if (objects.where.empty())
+    if (!path)
         return;
-    const cv::Mat behind = moved_picture(picture, objects, motion.farthest, planes, cv::INTER_LINEAR);
-    const PlaneOfObjects plane = {moved, behind,
+    const PlaneOfObjects plane = {moved, path->moved(picture),
                                   enlarged(cv::Mat1f(motion.rims.share[z](objects.part)), objects.side),
                                   enlarged(cv::Mat1f(motion.rims.noisy[z](objects.part)), objects.side)};
     draw_objects(picture(objects.where), plane, objects);
@@ -219,26 +246,25 @@ void SweepFollower::follow(const StackView &view, std::span<std::byte> memory, S
     const ObjectMotion motion = find_motion(small_, background_, noise_);
     if (motion.where.empty())
         return;
-    const size_t components = shape_.components().size();
-    std::vector<ObjectsOfComponent> objects;
-    std::vector<Fill> fills;
-    std::vector<BackgroundPart> parts;
-    for (size_t c = 0; c < components; c++) {
-        objects.push_back(objects_of(c, motion));
-        for (unsigned z = 0; z < shape_.planes; z++) {
-            fills.push_back(fill_of(c, z, motion));
-            parts.push_back(fills.back().background);
+    const size_t planes = shape_.planes, components = shape_.components().size();
+    std::vector<ObjectsOfComponent> objects(components);
+    std::vector<Fill> fills(components * planes);
+    std::vector<BackgroundPart> parts(fills.size());
+    in_parallel(components + fills.size(), [&](unsigned i) {
+        if (i < components) {
+            objects[i] = objects_of(i, motion);
+            return;
         }
-    }
+        const size_t at = i - components;
+        fills[at] = fill_of(at / planes, static_cast<unsigned>(at % planes), motion);
+        parts[at] = fills[at].background;
+    });
     denoiser.background(parts);
     const auto pictures = pictures_of(view, memory);
-    cv::parallel_for_(cv::Range(0, static_cast<int>(fills.size())), [&](const cv::Range &range) {
-        for (int i = range.start; i < range.end; i++) {
-            const auto at = static_cast<size_t>(i);
-            const size_t c = at / shape_.planes, z = at % shape_.planes;
-            fills[at].background.samples = std::move(parts[at].samples);
-            compose(pictures[z][c], static_cast<unsigned>(z), motion, objects[c], fills[at]);
-        }
+    in_parallel(fills.size(), [&](unsigned at) {
+        const size_t c = at / planes, z = at % planes;
+        fills[at].background.samples = std::move(parts[at].samples);
+        compose(pictures[z][c], static_cast<unsigned>(z), motion, objects[c], fills[at]);
     });
 }
 

@@ -42,7 +42,9 @@ private:
         cv::Mat1f share; /* 0 to 1, not clipped */
     };
 
+    cv::Size tiles() const; /* of the denoiser, across and down */
     void hold_tiles();
+    bool hold_tiles(unsigned z);
     ObjectsOfComponent objects_of(size_t component, const ObjectMotion &motion) const;
     Fill fill_of(size_t component, unsigned z, const ObjectMotion &motion) const;
     void compose(const cv::Mat &picture, unsigned z, const ObjectMotion &motion,

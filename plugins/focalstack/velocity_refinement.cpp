@@ -2,8 +2,9 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/velocity_refinement.h"
 
+#include "focalstack/in_parallel.h"
+
 #include <cmath>
-#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace dff {
@@ -21,14 +22,12 @@ constexpr float most_step = 0.5F;       /* pixels a plane: more is another thing
 std::vector<cv::Mat1f> moved_lumas(const SmallStack &sweep, const cv::Rect &where, const cv::Mat2f &velocity)
 {
     std::vector<cv::Mat1f> lumas(sweep.planes());
-    cv::parallel_for_(cv::Range(0, static_cast<int>(sweep.planes())), [&](const cv::Range &range) {
+    in_parallel(sweep.planes(), [&](unsigned z) {
         cv::Mat2f path;
-        for (int z = range.start; z < range.end; z++) {
-            path_through(velocity, z - (sweep.planes() - 1) / 2.0, path);
-            cv::Mat1f blurred, &moved = lumas[static_cast<size_t>(z)];
-            cv::GaussianBlur(sweep.luma(static_cast<unsigned>(z))(where), blurred, {}, noise_blur);
-            cv::remap(blurred, moved, path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-        }
+        path_through(velocity, z - (sweep.planes() - 1) / 2.0, path);
+        cv::Mat1f blurred;
+        cv::GaussianBlur(sweep.luma(z)(where), blurred, {}, noise_blur);
+        cv::remap(blurred, lumas[z], path, {}, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
     });
     return lumas;
 }
@@ -50,12 +49,17 @@ void add_pair(const cv::Mat1f &first, const cv::Mat1f &second, const cv::Mat1f &
         }
 }
 
-template <typename Pixel> cv::Mat_<Pixel> pool(const cv::Mat_<Pixel> &sums)
+/* Around each pixel, and fainter around that. */
+void pool(cv::Mat3f &squares, cv::Mat2f &products)
 {
-    cv::Mat near, far;
-    soften(sums, pooled, near);
-    soften(sums, 3.0 * pooled, far);
-    return cv::Mat_<Pixel>(near + far_weight * far);
+    cv::Mat near[2], far[2];
+    in_parallel(4, [&](unsigned i) {
+        const bool is_far = i / 2 == 1;
+        const cv::Mat &sums = i % 2 == 0 ? static_cast<const cv::Mat &>(squares) : products;
+        soften(sums, is_far ? 3.0 * pooled : pooled, (is_far ? far : near)[i % 2]);
+    });
+    squares = near[0] + far_weight * far[0];
+    products = near[1] + far_weight * far[1];
 }
 
 /* The velocity's error, of the equations' sums. */
@@ -116,8 +120,7 @@ void refine_velocity(const SmallStack &sweep, const cv::Rect &where, const cv::M
     cv::Mat2f products = cv::Mat2f::zeros(where.size());
     for (size_t z = 0; z + apart < lumas.size(); z++)
         add_pair(lumas[z], lumas[z + apart], weight, squares, products);
-    squares = pool(squares);
-    products = pool(products);
+    pool(squares, products);
     for (int y = 0; y < velocity.rows; y++)
         for (int x = 0; x < velocity.cols; x++)
             velocity(y, x) += step_of(squares(y, x), products(y, x));

@@ -19,10 +19,10 @@ using namespace dff::bench;
 namespace {
 
 constexpr uint32_t width = 1920, height = 1080, planes = 6;
-constexpr double speed = 4.0; /* pixels a plane */
-constexpr int radius = 54;    /* pixels */
-constexpr double noise = 4.0; /* standard deviation, of 255 */
-constexpr unsigned sweeps = 8, warm_up_rounds = 10;
+constexpr double speed = 4.0;                       /* pixels a plane */
+constexpr int radius = 54;                          /* pixels */
+constexpr double noise = 4.0;                       /* standard deviation, of 255 */
+constexpr unsigned sweeps = 8, warm_up_rounds = 35; /* noise is learned more seldom then */
 constexpr DenoiseParameters parameters{16, 1.0F};
 
 /* A ball that is lit from the left, at a time in planes. */
