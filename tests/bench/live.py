@@ -4,9 +4,12 @@
 """live.py [--seconds S] [--method M] [--size WxH] [--planes N] [--rate R] [--window sweep|rolling] [--denoise F [--local-motion]]
            [--camera OPTIONS]
 
-A live simulated camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown
-how many stacks were late or dropped, how many of these while a hypervisor took the processors away, and how long after
-its last plane a stack's depth left.
+A live camera through focalstackmux, dffdepth and aifcompose to a clocked sink, as on a rig. Prints as Markdown how many
+stacks were late or dropped, how many of these while a hypervisor took the processors away, and how long after its last
+plane a stack's depth left.
+
+What the camera shows is rendered before, since noise and motion take longer than a sweep lasts: 24 sweeps of
+lenssweeptestsrc, which come again and again.
 
 Run it in `meson devenv -C build`, on a machine that has nothing else to do; five minutes (--seconds 300) are the proof,
 ten seconds a trial.
@@ -14,27 +17,87 @@ ten seconds a trial.
 import argparse
 import bisect
 import collections
+import sys
 import threading
 import time
 
 import gi
 
 gi.require_version("Gst", "1.0")
-from gi.repository import Gst
+gi.require_version("GstDff", "1.0")
+from gi.repository import Gst, GstDff
 
 BUCKETS_MS = [*range(0, 100, 5), *range(100, 200, 25), *range(200, 500, 100), 500, 1000, 2000, 5000, float("inf")]
+RENDERED_SWEEPS = 24
 STOLEN_SHARE = 0.02  # of a second's processor time, above which the machine was not ours
 
 
-def pipeline_text(options):
-    width, height = options.size.split("x")
-    frames = int(options.seconds * options.rate * options.planes)
+class Camera:
+    """Frames of lenssweeptestsrc, shown again and again at the rate of a live camera."""
+
+    def __init__(self, options):
+        self.planes, self.rate = options.planes, options.rate
+        self.shown = int(options.seconds * options.rate) * options.planes
+        self.frames, self.caps = [], None
+        self.render(options)
+
+    def render(self, options):
+        width, height = options.size.split("x")
+        wanted = min(RENDERED_SWEEPS * self.planes, self.shown)
+        pipeline = Gst.parse_launch(
+            f"lenssweeptestsrc planes={self.planes} rate={self.rate} num-buffers={wanted} {options.camera} ! "
+            f"video/x-raw,format=I420,width={width},height={height} ! appsink name=frames sync=false")
+        frames, bus = pipeline.get_by_name("frames"), pipeline.get_bus()
+        pipeline.set_state(Gst.State.PLAYING)
+        while len(self.frames) < wanted:
+            sample = frames.emit("try-pull-sample", Gst.SECOND)
+            while message := bus.pop_filtered(Gst.MessageType.ERROR | Gst.MessageType.PROGRESS):
+                if message.type == Gst.MessageType.ERROR:
+                    raise SystemExit(message.parse_error()[0].message)
+                print(message.parse_progress()[2], file=sys.stderr)
+            if sample:
+                self.caps = sample.get_caps()
+                self.frames.append((sample.get_buffer(), GstDff.buffer_get_focus_meta(sample.get_buffer()).get_focus()))
+                if len(self.frames) % (4 * self.planes) == 0:
+                    print(f"{len(self.frames)} of {wanted} frames are rendered", file=sys.stderr)
+        pipeline.set_state(Gst.State.NULL)
+
+    def duration(self):
+        return Gst.SECOND // (self.rate * self.planes)
+
+    def frame(self, number):
+        """In the memory of the one that was rendered."""
+        rendered, focus = self.frames[number % len(self.frames)]
+        buffer = rendered.copy_region(Gst.BufferCopyFlags.MEMORY, 0, rendered.get_size())
+        focus.sweep, focus.frame_id = number // self.planes, number
+        GstDff.buffer_add_focus_meta(buffer, focus)
+        buffer.pts = number * Gst.SECOND // (self.rate * self.planes)
+        buffer.duration = self.duration()
+        return buffer
+
+    def play(self, pipeline):
+        """From now on, in a thread of its own. A frame leaves the camera at the end of its exposure."""
+        source, clock = pipeline.get_by_name("camera"), pipeline.get_clock()
+        start = clock.get_time() - pipeline.get_base_time()
+
+        def push():
+            for number in range(self.shown):
+                buffer = self.frame(number)
+                buffer.pts += start
+                clock.id_wait(clock.new_single_shot_id(pipeline.get_base_time() + buffer.pts + buffer.duration))
+                if source.emit("push-buffer", buffer) != Gst.FlowReturn.OK:
+                    return
+            source.emit("end-of-stream")
+
+        threading.Thread(target=push, daemon=True).start()
+
+
+def pipeline_text(options, camera):
     denoise = (f"queue max-size-bytes=0 ! focalstackdenoise name=denoise frames={options.denoise} "
                f"local-motion={options.local_motion} ! " if options.denoise > 1 else "")
     return (
-        f"lenssweeptestsrc name=camera is-live=true planes={options.planes} rate={options.rate} num-buffers={frames} "
-        f"{options.camera} ! "
-        f"video/x-raw,format=I420,width={width},height={height} ! queue ! "
+        f"appsrc name=camera is-live=true format=time block=true max-buffers=1 max-bytes=0 "
+        f"min-latency={camera.duration()} ! queue ! "
         f"focalstackmux name=mux window={options.window} ! {denoise}tee name=s  "
         f"s. ! queue max-size-bytes=0 ! dffdepth name=depth method={options.method} ! tee name=d  "
         "d. ! queue ! picture.depth  s. ! queue max-size-bytes=0 ! picture.stack  "
@@ -121,11 +184,12 @@ class StolenTime:
               f"{len(self.shares)} seconds; {late_then} of the {len(late)} late pictures fell in these")
 
 
-def run(pipeline):
+def run(pipeline, camera):
     """Until the end; returns when pictures were too late for the sink."""
     late = []
     bus = pipeline.get_bus()
     pipeline.set_state(Gst.State.PLAYING)
+    camera.play(pipeline)
     while True:
         message = bus.timed_pop_filtered(Gst.CLOCK_TIME_NONE, Gst.MessageType.EOS | Gst.MessageType.ERROR |
                                          Gst.MessageType.LATENCY | Gst.MessageType.QOS)
@@ -155,11 +219,13 @@ def main():
     options = parser.parse_args()
 
     Gst.init(None)
-    pipeline = Gst.parse_launch(pipeline_text(options))
+    camera = Camera(options)
+    pipeline = Gst.parse_launch(pipeline_text(options, camera))
+    pipeline.get_by_name("camera").set_property("caps", camera.caps)
     latency = Latency(pipeline, options.planes, options.window == "rolling")
     stolen = StolenTime()
     start, start_cpu = time.monotonic(), time.process_time()
-    late = run(pipeline)
+    late = run(pipeline, camera)
     passed, cpu = time.monotonic() - start, time.process_time() - start_cpu
 
     stacks = int(options.seconds * options.rate)
