@@ -168,7 +168,7 @@ void StackDenoiser::denoise(const StackView &view, std::span<std::byte> memory, 
     tracker_.remember(view);
     learns_ = !has_means_ || stacks_ < settled || stacks_ % seldom == 0;
     if (learns_)
-        learned_plane_ = (learned_plane_ + 1) % shape_.planes;
+        learned_plane_ = ((has_means_ ? learned_plane_ : 0) + 1) % shape_.planes;
     translate_errors(*device_, [&] {
         queue_.begin_stage("denoise");
         if (!has_means_)
@@ -198,8 +198,10 @@ void StackDenoiser::begin(const StackView &view)
         queue_.commands().enqueueFillBuffer(part->means, cl_ushort{0}, 0, part->means.getInfo<CL_MEM_SIZE>());
     for (uint32_t z = 0; z < shape_.planes; z++)
         look_at_noise(view, z);
-    for (const auto &part : components_)
+    for (const auto &part : components_) {
         part->noise = part->single();
+        part->spread = 1.0F;
+    }
     has_learned_ = false;
     stacks_ = 0;
     kept_sweeps_ = 1;

@@ -288,6 +288,8 @@ gboolean sink_event(GstBaseTransform *base, GstEvent *event)
     if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP && state.denoiser) {
         state.denoiser->forget();
         state.follower.reset();
+        const std::lock_guard lock(state.mutex);
+        state.report = {};
     }
     return GST_BASE_TRANSFORM_CLASS(gst_focal_stack_denoise_parent_class)->sink_event(base, event);
 }

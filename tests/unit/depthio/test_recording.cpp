@@ -157,6 +157,117 @@ TEST(Recording, planes_compressed_without_loss_give_the_same_depth_to_the_bit)
     }
 }
 
+namespace {
+
+/* A pipeline that is sought while its appsink holds it up: by an event to `target`, or as a whole. */
+class SoughtPipeline {
+public:
+    explicit SoughtPipeline(const std::string &description)
+    {
+        g_autoptr(GError) error = nullptr;
+        pipeline_ =
+            gst_parse_launch((description + " ! appsink name=end sync=false max-buffers=1").c_str(), &error);
+        EXPECT_EQ(error, nullptr) << error->message;
+        end_ = gst_bin_get_by_name(GST_BIN(pipeline_), "end");
+        gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+    }
+    ~SoughtPipeline()
+    {
+        gst_element_set_state(pipeline_, GST_STATE_NULL);
+        gst_object_unref(end_);
+        gst_object_unref(pipeline_);
+    }
+    SoughtPipeline(const SoughtPipeline &) = delete;
+    SoughtPipeline &operator=(const SoughtPipeline &) = delete;
+
+    /* So many frames, or fewer at the end. */
+    std::vector<std::vector<guint8>> next(size_t count)
+    {
+        std::vector<std::vector<guint8>> frames;
+        while (frames.size() < count) {
+            GstSample *taken = nullptr;
+            g_signal_emit_by_name(end_, "try-pull-sample", 60 * GST_SECOND, &taken);
+            const Sample sample(taken);
+            if (!sample)
+                break;
+            frames.push_back(content(gst_sample_get_buffer(sample.get())));
+        }
+        return frames;
+    }
+
+    bool seek_file_to_start()
+    {
+        g_autoptr(GstElement) file = gst_bin_get_by_name(GST_BIN(pipeline_), "file");
+        return gst_element_send_event(file, gst_event_new_seek(1.0, GST_FORMAT_BYTES, GST_SEEK_FLAG_FLUSH,
+                                                               GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0));
+    }
+
+    bool seek_to_start()
+    {
+        return gst_element_seek_simple(pipeline_, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0);
+    }
+
+private:
+    GstElement *pipeline_;
+    GstElement *end_;
+};
+
+/* Eight sweeps in which something moves; a file of them by `written`. */
+std::string record_moving(const char *name, const std::string &written)
+{
+    const std::string file = file_name(name);
+    play("lenssweeptestsrc num-buffers=48 planes=6 near=4 far=0.5 motion=2 noise=strong ! "
+         "video/x-raw,format=I420,width=160,height=120 ! " +
+             written + " ! filesink location=" + file,
+         {});
+    return file;
+}
+
+constexpr size_t moving_sweeps = 8;
+
+/* What comes after a seek, at any time, is what comes first: with no trace of what was seen before. */
+void expect_no_ghost(const std::string &chain, bool (SoughtPipeline::*seek)())
+{
+    const auto first = SoughtPipeline(chain).next(moving_sweeps + 1);
+    ASSERT_EQ(first.size(), moving_sweeps);
+    SoughtPipeline pipeline(chain);
+    for (const size_t seen : {size_t{5}, size_t{1}, moving_sweeps}) {
+        EXPECT_EQ(pipeline.next(seen).size(), seen);
+        ASSERT_TRUE((pipeline.*seek)());
+    }
+    const auto again = pipeline.next(moving_sweeps + 1);
+    ASSERT_EQ(again.size(), moving_sweeps);
+    for (size_t k = 0; k < moving_sweeps; k++)
+        EXPECT_EQ(again[k], first[k]) << "sweep " << k;
+}
+
+const std::string chains_in_time[] = {
+    " ! focalstackdenoise frames=16 local-motion=true",
+    " ! focalstackdenoise frames=16 local-motion=true ! dffdepth steady=on"};
+
+} // namespace
+
+TEST(Recording, a_seek_leaves_no_ghost_of_stacks)
+{
+    const std::string file = record_moving("sought", "focalstackmux ! dffmetapay ! gdppay");
+    for (const std::string &chain : chains_in_time)
+        expect_no_ghost("filesrc name=file location=" + file + " ! gdpdepay ! dffmetadepay" + chain,
+                        &SoughtPipeline::seek_file_to_start);
+    unlink(file.c_str());
+}
+
+TEST(Recording, a_seek_leaves_no_ghost_of_planes)
+{
+    const std::string file = record_moving("sought", "avenc_ffv1 ! matroskamux");
+    for (const std::string &chain : chains_in_time)
+        expect_no_ghost(
+            "filesrc location=" + file +
+                " ! matroskademux ! avdec_ffv1 ! lenssweeptag planes=6 near=4 far=0.5 ! focalstackmux" +
+                chain,
+            &SoughtPipeline::seek_to_start);
+    unlink(file.c_str());
+}
+
 TEST(Recording, depth_and_the_camera_clock_keep_their_metas)
 {
     const Harness harness = depth_harness("dffmetapay ! rtpgstpay ! rtpgstdepay ! dffmetadepay", 16, 8);
