@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""seams.py FOLDER DEPTH COUNT SLAB: depth beside the truth, and whether it steps where two slabs of SLAB pictures meet.
+"""seams.py FOLDER COUNT SLAB DEPTH...: depth beside the truth, and whether it steps where two slabs of SLAB pictures meet.
 
-FOLDER is what photographs.py made, DEPTH a TIFF file that dff-stack --depth wrote of COUNT pictures of it, evenly spread.
+FOLDER is what photographs.py made, DEPTH TIFF files that dff-stack --depth wrote of COUNT pictures of it, evenly spread: one that was
+computed in slabs, and one that was computed at once, say, of which the same is told at the same places. The last line of each is the
+median error of all seams together, by how far before and behind them the surface is; what slabs do to depth shows there best.
 """
 import pathlib
 import sys
@@ -15,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'pipelines/
 from dff_stack import slabs  # noqa: E402
 
 BIN = 0.25     # planes of true depth, over each of which the error has one median
-NEAR = 2       # planes from where two slabs meet
+NEAR = slabs.OVERLAP / 2 + 1  # planes from where two slabs meet, which includes the ends of both
 SHAKE = 4      # pixels by which photographs.py shifts pictures, and one more
 BORDER = 60    # pixels that are left out
 FEWEST = 500   # pixels of a bin
@@ -46,22 +48,35 @@ def steps(truth, error, count):
     return edges[1:], np.abs(np.diff(medians))
 
 
-def main(folder, depth, count, size):
-    count, depth = int(count), read(depth)
-    truth = np.load(pathlib.Path(folder, 'truth.npy'))
-    made = len(list(pathlib.Path(folder).glob('*.jpg')))
-    inner = np.s_[BORDER:-BORDER, BORDER:-BORDER]
-    truth = laid(truth * ((count - 1) / (made - 1)), depth)[inner].ravel()
-    error = depth[inner].ravel() - truth
+def around(distance, error):
+    """The median error at each half of a plane from the nearest seam."""
+    places = np.arange(-NEAR - 1, NEAR + 1.5, 0.5)
+    return places, [np.median(error[np.abs(distance - place) < 0.25]) for place in places]
+
+
+def tell(truth, depth, count, meet):
+    error = depth - truth
     print(f'median error {np.nanmedian(np.abs(error)):.3f} planes, {100 * np.mean(~(np.abs(error) < 1)):.2f} % more than one off or not known')
+    known = np.abs(error) < 3
+    truth, error = truth[known], error[known]
+    places, step = steps(truth, error, count)
+    is_near = np.abs(places[:, None] - meet).min(1) < NEAR
+    for words, which in (('where slabs meet', is_near), ('elsewhere', ~is_near)):
+        print(f'steps of depth {words}: mean {np.nanmean(step[which]):.3f} planes, greatest {np.nanmax(step[which]):.3f}')
+    nearest = meet[np.searchsorted((meet[1:] + meet[:-1]) / 2, truth)]
+    print('around seams:', ', '.join(f'{place:+.1f}: {value:+.3f}' for place, value in zip(*around(truth - nearest, error))))
+
+
+def main(folder, count, size, *files):
+    folder, count = pathlib.Path(folder), int(count)
+    truth = np.load(folder / 'truth.npy') * ((count - 1) / (len(list(folder.glob('*.jpg'))) - 1))
     spans = slabs.slabs_of(count, int(size))
     meet = np.array([(before[1] - 1 + after[0]) / 2 for before, after in zip(spans, spans[1:])])
-    known = np.abs(error) < 3
-    places, step = steps(truth[known], error[known], count)
-    is_near = np.abs(places[:, None] - meet).min(1) < NEAR if len(meet) else np.zeros(len(places), bool)
-    for words, which in (('where slabs meet', is_near), ('elsewhere', ~is_near)):
-        if np.isfinite(step[which]).any():
-            print(f'steps of depth {words}: mean {np.nanmean(step[which]):.3f} planes, greatest {np.nanmax(step[which]):.3f}')
+    inner = np.s_[BORDER:-BORDER, BORDER:-BORDER]
+    for file in files:
+        depth = read(file)
+        print(file)
+        tell(laid(truth, depth)[inner].ravel(), depth[inner].ravel(), count, meet)
 
 
 main(*sys.argv[1:])

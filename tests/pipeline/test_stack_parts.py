@@ -102,7 +102,7 @@ class Joining(unittest.TestCase):
         upper = np.interp(truth, centres, range(3)).astype(np.float32)
         confidences = np.stack([np.full(truth.shape, number, np.uint8) for number in range(3)])
         joined, confidence = joining.joined_rows(depths, confidences, spans, upper)
-        np.testing.assert_allclose(joined, truth, atol=0.25)
+        np.testing.assert_allclose(joined, truth, atol=0.005)
         self.assertEqual((confidence[0, 0], confidence[0, -1]), (0, 2))
         joined, _ = joining.joined_rows(depths, confidences, spans, upper * np.nan)
         self.assertTrue(np.isnan(joined).all())

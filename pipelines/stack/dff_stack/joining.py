@@ -8,6 +8,7 @@ from dff_stack.engine import Solved
 
 ROWS = 64            # that are joined at once
 ONE_SURFACE = 1.0    # planes; depths that differ by more are of two surfaces, which are not to be mixed
+UNTRUSTED = 0.001    # weight of what a slab says of depth beyond its ends
 
 
 def empty(encoding, size):
@@ -45,14 +46,15 @@ def paste(whole, part, tile, margin):
 
 
 def trust_within(depth, planes, is_first, is_last):
-    """How far a slab's own depth is to be believed: least at its ends, beyond which there may be something sharper."""
+    """How far a slab is to be believed of something at such a depth: least at its ends, beyond which there may be something sharper."""
     from_near = np.inf if is_first else depth
     from_far = np.inf if is_last else planes - 1 - depth
-    return np.clip((np.minimum(from_near, from_far) + 0.25) / (slabs.OVERLAP / 2), 0.02, 1)
+    return np.clip((np.minimum(from_near, from_far) + 0.25) / (slabs.OVERLAP / 2), UNTRUSTED, 1)
 
 
 def weights_of(depths, spans, upper):
-    """Of each slab's depth: near the slab that the level above names, and away from the slab's ends. [slab, row, column]"""
+    """Of each slab where it says, or is said to be, so deep: near the slab that the level above names, and away from the slab's ends.
+    [slab, row, column]"""
     weights = []
     for number, (first, last) in enumerate(spans):
         near = np.clip(1.5 - np.abs(upper - number), 0, None)
@@ -62,11 +64,13 @@ def weights_of(depths, spans, upper):
 
 
 def joined_rows(depths, confidences, spans, upper):
-    """Depth and confidence of some rows: of the slabs that tell of the same surface as the heaviest one, the mean."""
-    weights = weights_of(depths, spans, upper)
-    best = weights.argmax(0)[None]
+    """Depth and confidence of some rows: of the slabs that tell of the same surface as the heaviest one, the mean.
+
+    What is weighed is where the heaviest slab has the surface, not where each slab does: a slab that ends before it puts it at
+    its own end, and would draw the mean there."""
+    best = weights_of(depths, spans, upper).argmax(0)[None]
     depth = np.take_along_axis(depths, best, 0)[0]
-    same = weights * (np.abs(depths - depth) < ONE_SURFACE)
+    same = weights_of(np.broadcast_to(depth, depths.shape), spans, upper) * (np.abs(depths - depth) < ONE_SURFACE)
     total = same.sum(0)
     mean = (same * np.nan_to_num(depths)).sum(0) / np.where(total > 0, total, 1)
     return np.where(total > 0, mean, np.nan), np.take_along_axis(confidences, best, 0)[0]
