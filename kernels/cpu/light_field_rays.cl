@@ -53,7 +53,7 @@ inline float16 channel_between(uint16 upper_left, uint16 upper_right, uint16 low
 }
 
 /* Rounded colours between pixels. */
-inline uint16 colors_at(__global const uint *picture, int2 size, Points point)
+INLINE uint16 colors_at(__global const uint *picture, int2 size, Points point)
 {
     const float16 x = clamp(point.x, 0.0f, size.x - 1.0f), y = clamp(point.y, 0.0f, size.y - 1.0f);
     const int16 left = convert_int16(x), top = convert_int16(y);
@@ -149,9 +149,9 @@ inline uint16 trace_all(const Layers *layers, const Fan *fan)
     int16 u = first, hit = 0;
     float16 height = 0.0f;
     /* Where rays are next does not depend on what was read, so that the reads of several steps overlap. */
-    for (int16 walking = !upright; any(walking);) {
+    for (int16 walking = !upright; any_of(walking);) {
         int16 inside = walking && u <= last, steps = BLOCK;
-        for (int step = 0; step < BLOCK && any(inside); step++) {
+        for (int step = 0; step < BLOCK && any_of(inside); step++) {
             const float16 q = q_first - convert_float16(u + step - first) * ways.fall;
             const float16 here = heights_at(layers, &ways, u + step, q);
             const int16 under = inside && q <= here;
@@ -162,12 +162,12 @@ inline uint16 trace_all(const Layers *layers, const Fan *fan)
         u = walking ? u + steps : u;
         hit = hit || (walking && steps < BLOCK);
         walking = walking && !hit && u <= last;
-        if (!any(walking))
+        if (!any_of(walking))
             break;
         /* What passes an edge flies on over blocks, from the one that it is in. */
         u = walking ? max(u & -BLOCK, first) : u;
         int16 block = u;
-        for (int16 flying = walking; any(flying); u = (u & -BLOCK) + BLOCK) {
+        for (int16 flying = walking; any_of(flying); u = (u & -BLOCK) + BLOCK) {
             const float16 q = q_first - convert_float16(u - first) * ways.fall, q_end = q - (BLOCK - 1) * ways.fall;
             flying = flying && u <= last && q_end > roofs_over(layers, &ways, u, q, q_end);
             block = flying ? (u & -BLOCK) + BLOCK : block;
@@ -183,7 +183,7 @@ inline uint16 trace_all(const Layers *layers, const Fan *fan)
     const Points place = {origin.x + slope.x * crossing, origin.y + slope.y * crossing};
     const uint16 colors = colors_at((__global const uint *)layers->color, size, place);
     const int16 torn = hit && height - below > layers->step && under * fabs(lean) > TOUCH;
-    return any(torn) ? trace_chosen(layers, origin, slope, torn, u, colors) : colors;
+    return any_of(torn) ? trace_chosen(layers, origin, slope, torn, u, colors) : colors;
 }
 
 /* See hexagonal_lens of light_field_panel.cl. */

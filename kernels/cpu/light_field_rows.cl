@@ -5,27 +5,23 @@
  * cache. 16 pixels at a time are computed; only the way from a pixel of the view to those of the row is walked one by one.
  */
 #include "light_field_row.cl"
+#include "lanes16.cl"
 
 /* What one row of a view needs. */
 typedef struct {
     __global float *places; /* of the row's pixels in the view */
     __global int *columns;  /* the first column of the view at or behind each */
-    __global int *seen;     /* the row's pixel that each column shows, or shows what follows it */
-    __global float2 *ends;  /* places of that pixel and the next */
-    __global uint2 *colors; /* and their colours */
+    __global int *seen;     /* the last of the row's pixels with this first column, or 0 */
 } Painter;
 
-inline Painter make_painter(__global uint *scratch, int width, int view_width)
+inline Painter make_painter(__global uint *scratch, int width)
 {
-    const int pitch = PITCH(width), view_pitch = PITCH(view_width);
-    const Painter painter = {(__global float *)scratch, (__global int *)scratch + pitch, (__global int *)scratch + 2 * pitch,
-                             (__global float2 *)(scratch + 2 * pitch + view_pitch),
-                             (__global uint2 *)(scratch + 2 * pitch + 3 * view_pitch)};
+    const int pitch = PITCH(width);
+    const Painter painter = {(__global float *)scratch, (__global int *)scratch + pitch, (__global int *)scratch + 2 * pitch};
     return painter;
 }
 
-/* Finds which pixel each column of the view shows: the last one that stands at or before it. The view's columns are at
- * first + scale x. */
+/* Finds which pixel stands at or before each column of the view. The view's columns are at first + scale x. */
 inline void find_seen(const Painter *painter, const Row *row, float slope, float first, float scale, int width)
 {
     for (int j = 0; j < row->width; j += 16) {
@@ -33,24 +29,23 @@ inline void find_seen(const Painter *painter, const Row *row, float slope, float
         *(__global float16 *)(painter->places + j) = place;
         *(__global int16 *)(painter->columns + j) = first_behind(place, first, 1.0f / scale, width);
     }
+    __global int *restrict seen = painter->seen;
+    __global const int *restrict columns = painter->columns;
     for (int x = 0; x < width; x += 16)
-        *(__global int16 *)(painter->seen + x) = 0;
-    for (int j = 0; j < row->width - 1; j++)
-        painter->seen[painter->columns[j]] = j;
-    int last = 0;
-    for (int x = 0; x < width; x++) {
-        last = max(last, painter->seen[x]);
-        painter->seen[x] = last;
-        painter->ends[x] = *(__global const float2_any *)(painter->places + last);
-        painter->colors[x] = *(__global const uint2_any *)(row->color + last);
-    }
+        *(__global int16 *)(seen + x) = 0;
+    for (int j = 0, end = row->width - 1; j < end; j++)
+        seen[columns[j]] = j;
 }
 
-/* The colours of 4 columns, `share` of the way from their pixels to the next ones. */
-inline uint4 mix_colors(uint8 colors, float4 share)
+/* The colours, `share` of the way from some pixels to others. */
+inline uint16 mix_colors(uint16 left, uint16 right, float16 share)
 {
-    const float16 from = convert_float16(as_uchar16(colors.even)), to = convert_float16(as_uchar16(colors.odd));
-    return as_uint4(convert_uchar16(from + (to - from) * share.s0000111122223333 + 0.5f));
+    uint16 colors = OPAQUE;
+    for (int shift = 0; shift < 24; shift += 8) {
+        const float16 from = channel_of(left, shift), to = channel_of(right, shift);
+        colors |= convert_uint16(convert_int16(from + (to - from) * share + 0.5f)) << shift;
+    }
+    return colors;
 }
 
 inline void put_packed(__global uchar *line, int x, int channels, uint color)
@@ -75,30 +70,30 @@ inline void paint(const Layers *layers, const Painter *painter, const Row *row, 
     find_seen(painter, row, slope, first, scale, width);
     /* From a pixel to the next one that is lower by a step it is farther than that. */
     const float torn_apart = flat ? INFINITY : 1.0f + slope * layers->step + TOUCH;
-    for (int x = 0; x < width; x += 4) {
-        const float4 place = first + scale * ((float4)(0, 1, 2, 3) + (float)x);
-        const float8 ends = *(__global const float8 *)(painter->ends + x);
-        const float4 span = ends.odd - ends.even, beside = place - ends.even;
-        uint4 colors = mix_colors(*(__global const uint8 *)(painter->colors + x), beside / span);
-        const int4 torn = span > torn_apart && beside > TOUCH;
-        if (any(torn)) {
-            const float places[4] = {place.s0, place.s1, place.s2, place.s3};
-            const int is_torn[4] = {torn.s0, torn.s1, torn.s2, torn.s3};
-            uint behind[4] = {colors.s0, colors.s1, colors.s2, colors.s3};
-            for (int i = 0; i < min(4, width - x); i++)
-                if (is_torn[i])
-                    behind[i] = as_uint(convert_uchar4(look_behind(row, places[i], painter->seen[x + i], slope, layers->step,
-                                                                   layers->heights.x, layers->fill) + 0.5f));
-            colors = (uint4)(behind[0], behind[1], behind[2], behind[3]);
-        }
-        if (channels == 4 && x + 4 <= width) {
-            const int start = mirror ? width - 4 - x : x;
-            *(__global uint4_any *)(line + 4 * start) = (mirror ? colors.s3210 : colors) | 0xff000000u;
-            continue;
-        }
-        const uint each[4] = {colors.s0, colors.s1, colors.s2, colors.s3};
-        for (int i = 0; i < min(4, width - x); i++)
-            put_packed(line, mirror ? width - 1 - x - i : x + i, channels, each[i]);
+    int16 before = 0;
+    for (int x = 0; x < width; x += 16) {
+        const int16 seen = max(greatest_so_far(*(__global const int16 *)(painter->seen + x)), (int16)before.sf);
+        const float16 place = first + scale * (LANES + (float)x);
+        float16 left, right, left_color, right_color;
+        gather_pairs(painter->places, seen, &left, &right);
+        gather_pairs((__global const float *)row->color, seen, &left_color, &right_color);
+        const float16 span = right - left, beside = place - left;
+        uint16 colors = mix_colors(as_uint16(left_color), as_uint16(right_color), beside / span);
+        const int16 torn = span > torn_apart && beside > TOUCH;
+        const int count = min(16, width - x);
+        if (any_of(torn))
+            for (int i = 0; i < count; i++)
+                if (EACH(const int, torn)[i]) {
+                    const float4 color = look_behind(row, EACH(const float, place)[i], EACH(const int, seen)[i], slope,
+                                                     layers->step, layers->heights.x, layers->fill);
+                    EACH(uint, colors)[i] = as_uint(convert_uchar4(color + 0.5f)) | OPAQUE;
+                }
+        if (count == 16)
+            put_colors(line, mirror ? width - 16 - x : x, 16, channels, mirror ? colors.sfedcba9876543210 : colors);
+        else
+            for (int i = 0; i < count; i++)
+                put_packed(line, mirror ? width - 1 - x - i : x + i, channels, EACH(const uint, colors)[i]);
+        before = seen;
     }
 }
 
@@ -118,7 +113,7 @@ __kernel void view_rows(LAYERS, __global const float *slopes, int2 columns_rows,
     const int strip = (int)get_global_id(0), strips = (int)get_global_size(0);
     scratch += (size_t)strip * scratch_size;
     const Row row = make_row(&scratch, width), mirrored = make_row(&scratch, width);
-    const Painter painter = make_painter(scratch, width, view.x);
+    const Painter painter = make_painter(scratch, width);
     const int left_over = output_size.y - columns_rows.y * view.y, rows = view.y + left_over;
     for (int y = rows * strip / strips; y < rows * (strip + 1) / strips; y++) {
         if (y >= view.y) {

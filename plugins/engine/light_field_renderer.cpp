@@ -25,8 +25,7 @@ cl_int channels_of(PixelFormat format)
 
 /* light_field_row.cl and light_field_lenses.cl */
 constexpr unsigned strips = 64;
-constexpr unsigned bins = 8;
-constexpr unsigned bin_steps = 32;
+constexpr unsigned sectors = 4; /* from the middle of the cone to its edge */
 
 constexpr unsigned pitch_of(unsigned width)
 {
@@ -69,19 +68,15 @@ cl_float4 rows_of(const glm::dmat2 &m)
              static_cast<cl_float>(m[1][1])}};
 }
 
-/* The slopes that a kernel looks up: of each view, row by row from the bottom, or of even turns from the
- * middle to the cone's edge. */
+/* The slopes of the views, row by row from the bottom. */
 std::vector<cl_float> slopes_of(const LightFieldParameters &parameters)
 {
-    const bool lenticular = parameters.layout == LightFieldLayout::Lenticular;
-    const unsigned turns = bins * bin_steps;
     const unsigned columns = parameters.columns, rows = parameters.rows;
-    const unsigned views = lenticular ? 2 * turns + 1 : columns * rows;
     std::vector<cl_float> slopes;
-    for (unsigned i = lenticular ? turns : 0; i < views; i++) {
+    for (unsigned i = 0; i < columns * rows; i++) {
         const bool from_top = parameters.layout == LightFieldLayout::Views;
         const unsigned view = from_top ? (rows - 1 - i / columns) * columns + i % columns : i;
-        slopes.push_back(static_cast<cl_float>(view_slope(view, views, parameters.view_cone)));
+        slopes.push_back(static_cast<cl_float>(view_slope(view, columns * rows, parameters.view_cone)));
     }
     return slopes;
 }
@@ -141,8 +136,7 @@ void LightFieldRenderer::set_parameters(const LightFieldParameters &parameters)
             return;
         if (!layers_ || layers_->size() != geometry_.layers)
             layers_.emplace(queue_, geometry_.layers, shape_.picture);
-        const std::vector<cl_float> slopes = slopes_of(parameters);
-        slopes_ = upload(slopes);
+        slopes_ = upload(slopes_of(parameters));
         shifts_ = upload(shifts_of(shape_, parameters.sheet));
         if (!follows_rays(*device_, parameters.layout))
             prepare_rows();
@@ -164,7 +158,7 @@ void LightFieldRenderer::prepare_rows()
     const unsigned view_pitch = pitch_of(static_cast<unsigned>(geometry_.view.x));
     const bool lenticular = parameters_.layout == LightFieldLayout::Lenticular;
     scratch_size_ =
-        static_cast<cl_int>(8 * pitch + (lenticular ? (bins + 2) * pitch : 2 * pitch + 5 * view_pitch));
+        static_cast<cl_int>(8 * pitch + (lenticular ? (2 * sectors + 7) * pitch : 2 * pitch + view_pitch));
     scratch_ = queue_.allocate(strips * sizeof(cl_uint) * static_cast<size_t>(scratch_size_));
 }
 
@@ -241,14 +235,14 @@ void LightFieldRenderer::trace_lenticular(cl_uint index, const Output &output)
 {
     const LenticularSheet &sheet = parameters_.sheet;
     const auto pitch = static_cast<cl_float>(sheet.pitch), tilt = static_cast<cl_float>(sheet.tilt),
-               center = static_cast<cl_float>(sheet.center);
+               center = static_cast<cl_float>(sheet.center),
+               cone = static_cast<cl_float>(parameters_.view_cone);
     const cl_int4 flips{{sheet.flip_x, sheet.flip_y, sheet.invert_view, 0}};
     if (in_rows(*device_, parameters_.layout))
-        set_trace_arguments(index, output, pitch, tilt, center, slopes_, shifts_, flips, columns_.first,
+        set_trace_arguments(index, output, pitch, tilt, center, cone, shifts_, flips, columns_.first,
                             columns_.count, scratch_, scratch_size_);
     else
-        set_trace_arguments(index, output, pitch, tilt, center, static_cast<cl_float>(parameters_.view_cone),
-                            shifts_, flips);
+        set_trace_arguments(index, output, pitch, tilt, center, cone, shifts_, flips);
 }
 
 void LightFieldRenderer::trace_elemental(cl_uint index, const Output &output)
