@@ -102,19 +102,16 @@ private:
 
 } // namespace
 
+/* Throws std::exception with a user's text. */
 static GstFlowReturn render(GstLensSweepTestSrc *self)
 {
     TestStream &stream = *self->state->stream;
     const GstClockTime begin = gst_util_get_timestamp();
-    try {
-        if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
-            throw std::invalid_argument(*fault);
+    if (const auto fault = dff::value_out_of_range(G_OBJECT(self)))
+        throw std::invalid_argument(*fault);
+    {
         RenderProgress progress(GST_ELEMENT(self));
         stream.render(rendering_token(self), std::ref(progress));
-    } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("The scene cannot be rendered: %s.", error.what()),
-                          (nullptr));
-        return GST_FLOW_ERROR;
     }
     if (!stream.is_rendered())
         return GST_FLOW_FLUSHING;
@@ -232,6 +229,17 @@ static GstFlowReturn produce(GstLensSweepTestSrc *self)
                : flow;
 }
 
+static GstFlowReturn produce_or_say_why_not(GstLensSweepTestSrc *self)
+{
+    try {
+        return produce(self);
+    } catch (const std::exception &error) {
+        GST_ELEMENT_ERROR(self, RESOURCE, FAILED, ("The scene cannot be rendered: %s.", error.what()),
+                          (nullptr));
+        return GST_FLOW_ERROR;
+    }
+}
+
 static void end_streams(GstLensSweepTestSrc *self)
 {
     for (const Truth &truth : truths) {
@@ -247,7 +255,7 @@ static void end_streams(GstLensSweepTestSrc *self)
 void gst_lens_sweep_test_src_loop(gpointer user_data)
 {
     auto *self = GST_LENS_SWEEP_TEST_SRC(user_data);
-    const GstFlowReturn flow = produce(self);
+    const GstFlowReturn flow = produce_or_say_why_not(self);
     const bool renegotiates = flow == GST_FLOW_NOT_NEGOTIATED && gst_pad_needs_reconfigure(self->src_pad);
     if (flow == GST_FLOW_OK || renegotiates)
         return;

@@ -111,12 +111,16 @@ PicturePatch MovingOverlay::patch(unsigned plane, double time) const
         places.push_back(reach_of(band, thing, thing.pose(time)) & band.where);
         patch.where |= places.back();
     }
+    if (patch.where.empty())
+        return patch;
     const cv::Rect in_band = patch.where - band.where.tl();
     cv::cvtColor(band.slabs.front()(in_band), patch.values, cv::COLOR_RGBA2RGB);
     for (size_t i = 0; i < things_.size(); i++) {
-        const cv::Mat4f thing = blur(things_[i].draw(time, band.view.warp, places[i]),
-                                     blur_of(band, things_[i].pose(time).depth));
-        lay_over(patch.values(places[i] - patch.where.tl()), thing);
+        if (!places[i].empty()) {
+            const cv::Mat4f thing = blur(things_[i].draw(time, band.view.warp, places[i]),
+                                         blur_of(band, things_[i].pose(time).depth));
+            lay_over(patch.values(places[i] - patch.where.tl()), thing);
+        }
         if (!band.slabs[i + 1].empty())
             lay_over(patch.values, band.slabs[i + 1](in_band));
     }

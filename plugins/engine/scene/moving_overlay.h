@@ -35,7 +35,8 @@ public:
 
     const std::vector<MovingThing> &things() const { return things_; }
 
-    /* The part of a plane's picture that the things change, `time` planes after the start. */
+    /* The part of a plane's picture that the things change, `time` planes after the start; empty where the
+     * lens shows none of them. */
     PicturePatch patch(unsigned plane, double time) const;
 
 private:

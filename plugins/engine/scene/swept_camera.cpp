@@ -133,7 +133,8 @@ cv::Mat3f SweptCamera::seen(const cv::Mat3f &exposed, uint64_t sweep, unsigned p
     if (overlay_) {
         picture = exposed.clone();
         const PicturePatch patch = expose_motion(sweep, plane);
-        patch.values.copyTo(picture(patch.where));
+        if (!patch.where.empty())
+            patch.values.copyTo(picture(patch.where));
     }
     if (camera_motion_.is_still())
         return picture;

@@ -113,6 +113,32 @@ TEST(MovingThings, join_the_still_picture_without_a_seam)
     }
 }
 
+/* A lens that jitters by more than the picture's size shows some planes none of them, and some planes one. */
+TEST(MovingThings, out_of_the_picture_they_leave_it_as_it_is)
+{
+    const cv::Size small(64, 64);
+    SweptCameraSettings settings;
+    settings.plan = dff::SweepPlan::even(20, 5.0, 0.5);
+    settings.motion = 4.0;
+    settings.objects = all;
+    settings.blur_step = 0.0;
+    settings.jitter = 40.0;
+    const SweptCamera camera(dff::make_shapes(small, 0), settings);
+    unsigned unchanged = 0, changed = 0;
+    for (unsigned plane = 0; plane < 20; plane++)
+        for (uint64_t sweep = 0; sweep < 4; sweep++) {
+            const cv::Mat3f still = camera.expose(plane), seen = camera.seen(still, sweep, plane);
+            ASSERT_EQ(seen.size(), small);
+            const cv::Rect where = camera.expose_motion(sweep, plane).where;
+            cv::Mat3f outside = seen - still;
+            outside(where).setTo(0.0);
+            EXPECT_EQ(cv::norm(outside, cv::NORM_INF), 0.0) << "plane " << plane;
+            (where.empty() ? unchanged : changed)++;
+        }
+    EXPECT_GT(unchanged, 0U);
+    EXPECT_GT(changed, 0U);
+}
+
 TEST(MovingThings, stand_still_during_a_frozen_sweep)
 {
     SweptCameraSettings settings;
