@@ -70,7 +70,8 @@ GstCaps *TestStream::caps(const GstCaps *allowed) const
     for (guint i = 0; i < gst_value_list_get_size(formats); i++) {
         GstStructure *copy = gst_structure_copy(structure);
         gst_structure_set_value(copy, "format", gst_value_list_get_value(formats, i));
-        gst_structure_set(copy, "framerate", GST_TYPE_FRACTION, frames_n, frames_d, nullptr);
+        gst_structure_set(copy, "framerate", GST_TYPE_FRACTION, frames_n, frames_d, "interlace-mode",
+                          G_TYPE_STRING, "progressive", nullptr);
         gst_caps_append_structure(caps, copy);
     }
     return caps;

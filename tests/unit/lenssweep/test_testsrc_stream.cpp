@@ -363,6 +363,13 @@ TEST(TestSrcErrors, say_what_to_do)
     EXPECT_EQ(error_of(""), "");
 }
 
+/* The simulated pictures have no fields, and would be told to have some. */
+TEST(TestSrcErrors, interlaced_pictures_are_refused)
+{
+    EXPECT_NE(error_of("num-buffers=1", " ! video/x-raw,interlace-mode=interleaved ! fakesink"), "");
+    EXPECT_EQ(error_of("num-buffers=1", " ! video/x-raw,interlace-mode=progressive ! fakesink"), "");
+}
+
 TEST(TestSrcErrors, values_out_of_range_are_named_with_the_range)
 {
     EXPECT_NE(error_of("planes=100").find("planes=100 is out of range: 2 to 64"), std::string::npos);
