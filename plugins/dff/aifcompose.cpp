@@ -233,13 +233,26 @@ static GstFlowReturn gst_aif_compose_aggregate(GstAggregator *aggregator, gboole
     return GST_AIF_COMPOSE(aggregator)->state->aggregate();
 }
 
-static GstFlowReturn gst_aif_compose_update_src_caps(GstAggregator *aggregator, GstCaps *, GstCaps **caps)
+/* Without a word here nobody would say why nothing comes: the pads' threads learn it by their next buffer,
+ * and the last stacks of a stream have none after them. */
+static GstFlowReturn gst_aif_compose_update_src_caps(GstAggregator *aggregator, GstCaps *downstream,
+                                                     GstCaps **caps)
 {
     const State &state = *GST_AIF_COMPOSE(aggregator)->state;
     if (!state.has_main_caps())
         return GST_AGGREGATOR_FLOW_NEED_DATA;
-    *caps = gst_video_info_to_caps(&state.frame());
-    return GST_FLOW_OK;
+    const GstVideoInfo &frame = state.frame();
+    *caps = gst_video_info_to_caps(&frame);
+    if (!downstream || gst_caps_can_intersect(*caps, downstream))
+        return GST_FLOW_OK;
+    GST_ELEMENT_ERROR(
+        aggregator, CORE, NEGOTIATION,
+        ("The pictures are %s of %dx%d pixels, as the stacks are, and what comes after does not "
+         "take them: put videoconvert or videoscale behind this element",
+         gst_video_format_to_string(GST_VIDEO_INFO_FORMAT(&frame)), GST_VIDEO_INFO_WIDTH(&frame),
+         GST_VIDEO_INFO_HEIGHT(&frame)),
+        ("downstream takes %" GST_PTR_FORMAT, downstream));
+    return GST_FLOW_ERROR;
 }
 
 static gboolean gst_aif_compose_sink_event(GstAggregator *aggregator, GstAggregatorPad *pad, GstEvent *event)

@@ -196,6 +196,18 @@ TEST(AifCompose, a_pad_that_is_not_linked_is_an_error_and_no_hang)
     EXPECT_NE(no_stack.error.find("\"stack\""), std::string::npos) << no_stack.error;
 }
 
+/* Two stacks, which are all in the queues before anybody could be told by the flow of a third. */
+TEST(AifCompose, a_picture_that_nobody_after_it_takes_is_an_error_and_no_hang)
+{
+    const Outcome outcome =
+        run("lenssweeptestsrc num-buffers=12 ! video/x-raw,width=128,height=96,format=GRAY8 ! focalstackmux "
+            "! tee name=s  s. ! queue ! dffdepth ! queue ! c.depth  s. ! queue ! c.stack  "
+            "aifcompose name=c ! queue ! video/x-raw,format=RGB ! fakesink",
+            20);
+    EXPECT_NE(outcome.error.find("GRAY8"), std::string::npos) << outcome.error;
+    EXPECT_NE(outcome.error.find("videoconvert"), std::string::npos) << outcome.error;
+}
+
 TEST(AifCompose, depth_of_another_size_is_an_error_that_names_both)
 {
     const Outcome outcome =
