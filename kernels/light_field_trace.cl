@@ -104,7 +104,9 @@ inline float4 trace_from(const Layers *layers, float2 origin, float2 slope, int 
             behind = false;
             continue;
         }
-        for (int u = block; u < block + BLOCK; u++, q -= way.fall) {
+        const int begin = max(block, u_first);
+        q -= (begin - block) * way.fall;
+        for (int u = begin; u < block + BLOCK; u++, q -= way.fall) {
             const int pixel = pixel_at(&way, u, q);
             const float height = layers->height[pixel];
             if (q > height) {

@@ -68,7 +68,7 @@ INLINE uint16 colors_at(__global const uint *picture, int2 size, Points point)
     return color;
 }
 
-/* The colours, with those of the chosen rays traced one by one, each from the block that the pixel u is in. */
+/* The colours, with those of the chosen rays traced one by one, each from the pixel u. */
 inline uint16 trace_chosen(const Layers *layers, Points origin, Points slope, int16 chosen, int16 u, uint16 colors)
 {
     for (int i = 0; i < 16; i++)
@@ -80,27 +80,20 @@ inline uint16 trace_chosen(const Layers *layers, Points origin, Points slope, in
     return colors;
 }
 
-/* Rays through one lens: they cross the plane of zero parallax in `origin` and lean alike along y. */
+/* All rays through one lens: they cross the plane of zero parallax in `origin`, and lean by at most `reach` along x and y. */
 typedef struct {
-    float2 origin;
-    float16 slope_x;
-    float slope_y;
-    float2 ends; /* least and greatest of slope_x */
-} Fan;
+    float2 origin, reach;
+} Lens;
 
-/* The greatest height of the squares, of 1 << bits pixels a side, that rays of the fan pass above as they fall from q to
+/* The greatest height of the squares, of 1 << bits pixels a side, that rays of the lens pass above as they fall from q to
  * q_end. `roof`: rows of `stride` squares. */
-inline float roof_under(__global const float *roof, int stride, int bits, int2 size, const Fan *fan, float q, float q_end)
+inline float roof_under(__global const float *roof, int stride, int bits, int2 size, const Lens *lens, float q, float q_end)
 {
     /* Rays look at the pixel that is nearest across their way. */
-    const float margin = 0.6f;
-    const float4 x = (float4)(fan->ends * q, fan->ends * q_end) + fan->origin.x;
-    const float2 y = (float2)(q, q_end) * fan->slope_y + fan->origin.y;
-    const float2 from = (float2)(min(min(x.s0, x.s1), min(x.s2, x.s3)), min(y.s0, y.s1)) - margin;
-    const float2 to = (float2)(max(max(x.s0, x.s1), max(x.s2, x.s3)), max(y.s0, y.s1)) + margin;
+    const float2 beside = lens->reach * max(fabs(q), fabs(q_end)) + 0.6f;
     const float2 last_pixel = convert_float2(size - 1);
-    const int2 first = convert_int2(clamp(from, 0.0f, last_pixel)) >> bits;
-    const int2 last = convert_int2(clamp(to, 0.0f, last_pixel)) >> bits;
+    const int2 first = convert_int2(clamp(lens->origin - beside, 0.0f, last_pixel)) >> bits;
+    const int2 last = convert_int2(clamp(lens->origin + beside, 0.0f, last_pixel)) >> bits;
     float greatest = -INFINITY;
     for (int row = first.y; row <= last.y; row++)
         for (int column = first.x; column <= last.x; column++)
@@ -108,18 +101,18 @@ inline float roof_under(__global const float *roof, int stride, int bits, int2 s
     return greatest;
 }
 
-/* The height down to which nothing stands in the fan's way; the least of all if nothing does. */
-inline float free_down_to(const Layers *layers, const Fan *fan)
+/* The height down to which nothing stands in the way of the lens's rays; the least of all if nothing does. */
+inline float free_down_to(const Layers *layers, const Lens *lens)
 {
     const int2 size = layers->size;
     const float least = layers->heights.x;
     __global const float *groups = layers->roof + BLOCKS(size.x) * BLOCKS(size.y);
-    const float fall = BLOCK / max(max(max(-fan->ends.x, fan->ends.y), fabs(fan->slope_y)), 1e-3f);
+    const float fall = BLOCK / max(max(lens->reach.x, lens->reach.y), 1e-3f);
     float q = min(layers->heights.y,
-                  roof_under(groups, GROUPS(size.x), BLOCK_BITS + GROUP_BITS, size, fan, layers->heights.y, least));
+                  roof_under(groups, GROUPS(size.x), BLOCK_BITS + GROUP_BITS, size, lens, layers->heights.y, least));
     while (q > least) {
         const float q_end = max(q - fall, least);
-        const float roof = roof_under(layers->roof, BLOCKS(size.x), BLOCK_BITS, size, fan, q, q_end);
+        const float roof = roof_under(layers->roof, BLOCKS(size.x), BLOCK_BITS, size, lens, q, q_end);
         if (roof >= q_end)
             return min(q, roof);
         q = q_end;
@@ -127,11 +120,19 @@ inline float free_down_to(const Layers *layers, const Fan *fan)
     return least;
 }
 
+/* Rays through one lens in a row of the panel, which lean alike along y. Nothing stands in their way down to `from`. */
+typedef struct {
+    float2 origin;
+    float16 slope_x;
+    float slope_y;
+    float from;
+} Fan;
+
 /* The rounded colours that 16 rays see. */
 inline uint16 trace_all(const Layers *layers, const Fan *fan)
 {
     const int2 size = layers->size;
-    const float least = layers->heights.x, greatest = layers->heights.y, from = free_down_to(layers, fan);
+    const float least = layers->heights.x, greatest = layers->heights.y, from = fan->from;
     const Points slope = {fan->slope_x, fan->slope_y};
     const int blocks = BLOCKS(size.x);
     const int16 along_x = fabs(slope.x) >= fabs(slope.y);
@@ -221,17 +222,31 @@ inline void find_lenses(int x, float py, float2 center, float4 to_lens, float4 t
     }
 }
 
+/* How far from a lens's middle its pixels are at most along x and y, pixels of the panel. */
+inline float2 half_size(float4 to_panel, int hexagonal)
+{
+    const float half_height = hexagonal ? 0.57735027f : 0.5f; /* 1 / sqrt(3) */
+    const float4 sides = fabs(to_panel);
+    return 0.5f * sides.even + half_height * sides.odd;
+}
+
 /* Arguments as those of elemental. Work-items (strips of rows). */
 __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_panel, float gap, int hexagonal, int flip,
                              float2 first, float2 scale, __global uchar *output, ulong stride, int channels, int2 output_size)
 {
     const Layers layers = MAKE_LAYERS;
     const int strip = (int)get_global_id(0), strips = (int)get_global_size(0);
-    const float to_slope = (flip ? -1.0f : 1.0f) / gap, aspect = scale.y / scale.x;
+    const float2 to_slope = (float2)(1.0f, scale.y / scale.x) * (flip ? -1.0f : 1.0f) / gap;
+    const float2 reach = half_size(to_panel, hexagonal) * fabs(to_slope);
     float middle_x[SECTION] __attribute__((aligned(64))), middle_y[SECTION] __attribute__((aligned(64)));
+    /* Of the lenses over the pixels of the row before: middles, and down to where their rays are free. */
+    float2 known[SECTION];
+    float known_from[SECTION];
     /* Neighbours in a section look at the same part of the relief, row after row. */
     for (int section = 0; section < output_size.x; section += SECTION) {
         const int width = min(SECTION, output_size.x - section);
+        for (int i = 0; i < width; i++)
+            known[i] = INFINITY;
         for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
             __global uchar *line = output + stride * (ulong)y;
             const float py = y + 0.5f - center.y;
@@ -240,11 +255,19 @@ __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_pa
                 const float2 middle = (float2)(middle_x[i], middle_y[i]);
                 for (end = i + 1; end < min(i + 16, width) && middle_x[end] == middle.x && middle_y[end] == middle.y;)
                     end++;
+                const float2 origin = first + scale * (middle + center - 0.5f);
+                if (known[i].x != middle.x || known[i].y != middle.y) {
+                    const Lens lens = {origin, reach};
+                    known_from[i] = free_down_to(&layers, &lens);
+                }
+                const float from = known_from[i];
+                for (int k = i; k < end; k++) {
+                    known[k] = middle;
+                    known_from[k] = from;
+                }
                 /* Lanes behind the lens look where its last pixel does; what they paint is painted over. */
                 const float16 px = min(LANES16 + (float)i, (float)(end - 1)) + (section + 0.5f - center.x);
-                Fan fan = {first + scale * (middle + center - 0.5f), (middle.x - px) * to_slope,
-                           (middle.y - py) * (to_slope * aspect)};
-                fan.ends = (float2)(min(fan.slope_x.s0, fan.slope_x.sf), max(fan.slope_x.s0, fan.slope_x.sf));
+                const Fan fan = {origin, (middle.x - px) * to_slope.x, (middle.y - py) * to_slope.y, from};
                 const int x = section + i;
                 put_colors(line, x, min(16, output_size.x - x), channels, trace_all(&layers, &fan));
             }
