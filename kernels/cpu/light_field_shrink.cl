@@ -5,6 +5,7 @@
  * of them covers are added up first, 16 bytes at a time.
  */
 typedef uchar16 __attribute__((aligned(1))) uchar16_any;
+typedef float4 __attribute__((aligned(4))) float4_any;
 
 /* Adds `weight` times the bytes from `begin` to `end` of a row; `first`: there is nothing to add to yet. */
 inline void add_row(__global const uchar *row, float weight, bool first, int begin, int end, __global float *sums)
@@ -46,12 +47,13 @@ __kernel void shrink_color_rows(__global const uchar *source, ulong stride, int 
                     end * channels, sums);
         for (int x = columns.x; x < columns.y; x++) {
             const float left = x * scale.x, right = min(left + scale.x, (float)source_size.x);
-            float3 sum = 0.0f;
+            float4 sum = 0.0f; /* of three channels, and what stands behind them */
             for (int i = (int)left; i < right; i++) {
                 __global const float *pixel = sums + (i - begin) * channels;
-                sum += (min(right, i + 1.0f) - max(left, (float)i)) * (float3)(pixel[0], pixel[1], pixel[2]);
+                sum += (min(right, i + 1.0f) - max(left, (float)i)) * *(__global const float4_any *)pixel;
             }
-            to[x] = (uchar4)(convert_uchar3(sum / ((right - left) * (bottom - top)) + 0.5f), 255);
+            const float4 mean = sum / ((right - left) * (bottom - top));
+            to[x] = convert_uchar4((float4)(mean.xyz + 0.5f, 255.0f));
         }
     }
 }
