@@ -24,7 +24,7 @@ class Sweeps(Folders):
 
     def frames(self, has_deep_colour=False):
         found = sweep.Sweep(self.gather(), has_deep_colour, False)
-        found.look_through(0, Progress(quiet=True))
+        found.look_through(0, 2 ** 30, Progress(quiet=True))
         return found, [found.read(number) for number in range(found.count)]
 
     def assert_refused(self, *phrases, act=None):

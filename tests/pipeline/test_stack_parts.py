@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
 """test_stack_parts.py SOURCE_ROOT: how dff-stack cuts what is too large and joins the parts, and how warps are chained."""
+import itertools
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -115,16 +117,34 @@ class Warps(unittest.TestCase):
                 for k, (x, y) in enumerate(random.standard_normal((count, 2)))]
 
     def test_windows_are_chained(self):
-        for count in (2, 40, 64, 65, 200):
+        for count, most in itertools.product((2, 40, 64, 65, 200), (16, 18, 64)):
             truth = self.plane_warps(count)
-            spans = alignment.windows(count)
+            spans = alignment.windows(count, most)
             self.assertEqual((spans[0][0], spans[-1][1]), (0, count))
+            self.assertLessEqual(max(last - first for first, last in spans), most)
             found = []
             for first, last in spans:
                 middle = np.linalg.inv(truth[first + (last - first) // 2])
                 found.append([{'matrix': truth[k] @ middle, 'trusted': True, 'blank': False} for k in range(first, last)])
             expected = [warp @ np.linalg.inv(truth[count // 2]) for warp in truth]
             np.testing.assert_allclose(alignment.chained(found, spans), expected, atol=1e-6)
+
+    def test_memory_limits_what_is_matched_at_once(self):
+        """In a process of its own, whose greatest memory can be asked for. Of 40 such pictures at once it is nearly 600 MB."""
+        memory = 500e6
+        code = (f'import resource, sys; sys.path.insert(0, {sys.path[0]!r})\n'
+                'import numpy as np\nfrom dff_stack import alignment, engine\nengine.start()\n'
+                'scene = np.random.default_rng(1).integers(0, 256, (1330, 1990)).astype(np.uint8)\n'
+                'lumas = [np.roll(scene, number % 3, 0) for number in range(40)]\n'
+                f'window = alignment.window_for(lumas, {memory})\n'
+                'found = alignment.estimate(lumas, 1, lambda some: engine.find_warps(some, print), window)\n'
+                'assert all(found.trusted)\n'
+                'print(window, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)')
+        finished = subprocess.run([sys.executable, '-c', code], stdout=subprocess.PIPE, text=True, check=True, timeout=100)
+        window, most_kib = map(int, finished.stdout.split())
+        self.assertLess(most_kib * 1024, memory)
+        self.assertEqual(alignment.window_for([np.zeros((1330, 1990), np.uint8)], 4 * GIB), alignment.MOST_IN_WINDOW)
+        self.assertGreaterEqual(window, alignment.FEWEST_IN_WINDOW)
 
     def test_estimates_are_of_full_size(self):
         warp = np.array([[1, 0, 2.0], [0, 1, -1], [1e-5, 0, 1]])

@@ -315,7 +315,7 @@ class Refusing(Sweeps):
     def test_nothing_but_one_picture_again_and_again(self):
         shutil.copy(self.photos / '0.jpg', self.photos / '1.jpg')
         found = sweep.Sweep(self.gather(), False, False)
-        look = found.look_through(0, Progress(quiet=True))
+        look = found.look_through(0, 2 ** 30, Progress(quiet=True))
         self.assert_refused('same', act=lambda: sweep.without_duplicates(found, look, self.said.append))
 
 
@@ -367,7 +367,17 @@ class SideBySide(unittest.TestCase):
             next(found)
 
 
-class Shrinking(unittest.TestCase):
+class Shrinking(Sweeps):
+    def test_little_memory_keeps_smaller_pictures_for_the_alignment(self):
+        for number in range(2):
+            write(self.photos / f'{number}.png', flat(9, 1600, 64)[:, :, :1])
+        found = sweep.Sweep(self.gather(), False, False)
+        whole = 2 * 1600 * 64
+        for memory, side in ((4 * whole, 1600), (whole, 800), (1, 533)):
+            self.assertEqual(found.small_side(memory), side)
+        look = found.look_through(0, whole, Progress(quiet=True))
+        self.assertEqual((look.lumas[0].shape, look.factor), ((32, 800), 2))
+
     def test_luma_is_the_mean_over_squares(self):
         pixels = np.random.default_rng(1).integers(0, 65536, (67, 130, 3)).astype(np.uint16)
         small = encoding.shrunk_luma(pixels, 32)

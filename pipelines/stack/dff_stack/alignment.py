@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""How the pictures of a sweep lie against each other: found in small ones, a window of 64 after the other, and kept in files.
+"""How the pictures of a sweep lie against each other: found in small ones, a window of them after the other, and kept in files.
 
 A warp is a 3x3 matrix on pixels from the picture's centre: where a point of the middle picture is found in another one.
 """
@@ -12,7 +12,9 @@ import numpy as np
 
 from dff_stack import Unusable
 
-WINDOW, OVERLAP = 64, 32  # pictures that are matched at once, and that two windows share
+MOST_IN_WINDOW, FEWEST_IN_WINDOW = 64, 16  # pictures that are matched at once; half of them are in the next window too
+MATCHED_SIDE = 1000      # pixels of the longer side at which the finest of the pictures are matched
+BYTES_BESIDE = 250e6     # of the program and the elements, whatever they work on
 
 
 @dataclasses.dataclass
@@ -34,12 +36,27 @@ def normal(matrix):
     return matrix / matrix[2, 2]
 
 
-def windows(count):
-    """First and last + 1 picture of each."""
-    if count <= WINDOW:
+def bytes_a_picture(width, height):
+    """What matching needs for each of the small pictures beside themselves: the stack as it came and aligned, and what is matched."""
+    finest = min(1, MATCHED_SIDE / max(width, height)) ** 2
+    return width * height * (2.2 + 10 * finest)
+
+
+def window_for(lumas, memory):
+    """Pictures that may be matched at once in so many bytes, in which the lumas are already."""
+    height, width = lumas[0].shape
+    room = memory - BYTES_BESIDE - len(lumas) * width * height
+    fitting = max(0, room) // bytes_a_picture(width, height)
+    return int(np.clip(fitting // 2 * 2, FEWEST_IN_WINDOW, MOST_IN_WINDOW))
+
+
+def windows(count, most=MOST_IN_WINDOW):
+    """First and last + 1 picture of each, of which `most`, an even number, are matched at once."""
+    if count <= most:
         return [(0, count)]
-    pieces = -(-(count - OVERLAP) // (WINDOW - OVERLAP))
-    return [(first, min(first + WINDOW, count)) for first in range(0, pieces * (WINDOW - OVERLAP), WINDOW - OVERLAP)]
+    step = most // 2
+    pieces = -(-(count - step) // step)
+    return [(first, min(first + most, count)) for first in range(0, pieces * step, step)]
 
 
 def chained(found, spans):
@@ -52,15 +69,15 @@ def chained(found, spans):
             both = [number for number in shared if planes[number - first]['trusted']] or shared
             onto = np.mean([normal(np.linalg.solve(planes[number - first]['matrix'], warps[number])) for number in both], 0)
         for number, plane in enumerate(planes, first):
-            if number not in warps or number - first > OVERLAP // 2:
+            if number not in warps or number - first > len(shared) // 2:
                 warps[number] = normal(plane['matrix'] @ onto)
     back = np.linalg.inv(warps[len(warps) // 2])
     return [normal(warps[number] @ back) for number in range(len(warps))]
 
 
-def estimate(lumas, factor, find_warps):
+def estimate(lumas, factor, find_warps, window=MOST_IN_WINDOW):
     """`lumas` are `factor` times smaller than the pictures; find_warps(lumas) is that of the engine."""
-    spans = windows(len(lumas))
+    spans = windows(len(lumas), window)
     found = [find_warps(lumas[first:last]) for first, last in spans]
     facts = {}
     for planes, (first, _) in zip(found, spans):
@@ -78,13 +95,13 @@ def misfits(aligned):
     return {number for number, trusted in enumerate(aligned.trusted) if not trusted and not aligned.blank[number]}
 
 
-def estimate_most(lumas, factor, find_warps):
+def estimate_most(lumas, factor, find_warps, window=MOST_IN_WINDOW):
     """The same, where the picture in the middle may be the one that does not fit: nearly all others then seem not to."""
-    aligned = estimate(lumas, factor, find_warps)
+    aligned = estimate(lumas, factor, find_warps, window)
     middle = len(lumas) // 2
     if len(lumas) < 4 or 2 * len(misfits(aligned)) <= len(lumas):
         return aligned
-    again = estimate(lumas[:middle] + lumas[middle + 1:], factor, find_warps)
+    again = estimate(lumas[:middle] + lumas[middle + 1:], factor, find_warps, window)
     if 2 * len(misfits(again)) > len(lumas):
         return aligned
     for values, own in ((again.warps, np.eye(3)), (again.trusted, False), (again.blank, False)):

@@ -41,7 +41,8 @@ SEEN THROUGH
 
 MEMORY
   What does not fit is computed in slabs of pictures that overlap, whose results become a stack of their own, and in tiles
-  side by side. --memory says how much may be used; without it 60 % of what is free. What waits for its turn lies in TMPDIR.
+  side by side, and fewer pictures are matched at once by the alignment. --memory says how much may be used; without it 60 % of
+  what is free. What waits for its turn lies in TMPDIR.
 
 MANY STACKS
   dff-stack --batch FOLDER -o RESULTS works through the folders in FOLDER, each a sweep, and writes RESULTS/NAME.tif and

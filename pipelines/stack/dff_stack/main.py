@@ -18,9 +18,10 @@ def list_pictures(pictures):
         print(f'   {number:2}  {picture}', flush=True)
 
 
-def fitting(found, look, say):
-    """How the pictures lie; those that fit the others by no warp are left out."""
-    aligned = alignment.estimate_most(look.lumas, look.factor, lambda lumas: engine.find_warps(lumas, say))
+def fitting(found, look, most, say):
+    """How the pictures lie, found in so many bytes of memory; those that fit the others by no warp are left out."""
+    window = alignment.window_for(look.lumas, most - found.bytes_kept)
+    aligned = alignment.estimate_most(look.lumas, look.factor, lambda lumas: engine.find_warps(lumas, say), window)
     names = [picture.name for picture in found.pictures]
     blank = [name for name, is_blank in zip(names, aligned.blank) if is_blank]
     if blank:
@@ -37,14 +38,14 @@ def fitting(found, look, say):
     return aligned.without(misfits).warps
 
 
-def warps_of(options, found, look, say, progress):
+def warps_of(options, found, look, most, say, progress):
     width, height = found.size
     if options.align == 'off':
         return [np.eye(3)] * found.count if options.even == 'on' else None
     if options.use_alignment:
         return alignment.load(options.use_alignment, width, height, found.count).warps
     progress.begin(f'Aligning {found.count} pictures', 1)
-    return fitting(found, look, say)
+    return fitting(found, look, most, say)
 
 
 def process(options, progress, tell):
@@ -67,7 +68,7 @@ def process(options, progress, tell):
     most = memory.to_use(options.memory)
     first_plan = slabs.plan(found.count, *found.size, found.encoding, most, 0, engine.most_side())
     progress.begin(f'Reading {found.count} pictures of {pictures[0].size}', found.count)
-    look = found.look_through(first_plan.slabs[0][1], progress)
+    look = found.look_through(first_plan.slabs[0][1], most, progress)
     if options.bad_pixels == 'off':
         found.bad_pixels = ()
     elif len(found.bad_pixels):
@@ -76,7 +77,7 @@ def process(options, progress, tell):
     if options.step:
         depths.take_step(found.pictures, options.step)
     with results.together() as files:
-        warps = warps_of(options, found, look, say, progress)
+        warps = warps_of(options, found, look, most, say, progress)
         order.tell_of_doubts(found.pictures, look.lumas, look.sharpness, say)
         look.keep_small()
         work = solve.Work(most, options.even == 'on', progress, lambda text: say(f'   {text}'), options.prefer)

@@ -10,6 +10,8 @@ from dff_stack import Unusable, ahead, depths, encoding, listed, order, pictures
 from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
+SMALLEST = 500    # of the same where there is little memory
+SHARE = 0.25      # of the memory that these may take
 CONTACT = 160     # that a report shows
 PREVIEW = 4       # times smaller
 
@@ -75,9 +77,17 @@ class Sweep:
         found = picture.pixels(self.encoding.read_as)
         return found if self.shrink == 1 else smaller(found, self.shrink)
 
-    def pixels_and_luma(self, picture):
-        pixels = self.pixels(picture)
-        return pixels, encoding.shrunk_luma(pixels, SMALL)
+    @property
+    def bytes_kept(self):
+        return sum(frame.nbytes for frame in self.kept.values())
+
+    def small_side(self, memory):
+        """Pixels of the longer side, and up to twice that, in which all pictures are kept for the alignment."""
+        longer, whole = max(self.size), self.count * self.size[0] * self.size[1] * (4 if self.encoding.is_float else 1)
+        factor = max(1, longer // SMALL)
+        while whole / factor ** 2 > SHARE * memory and longer // (factor + 1) >= SMALLEST:
+            factor += 1
+        return longer // factor
 
     def read(self, number, keep=False):
         """A frame of the stack. It stays in memory if it is wanted again."""
@@ -90,12 +100,18 @@ class Sweep:
             self.kept[picture] = frame
         return frame
 
-    def look_through(self, keep, progress):
+    def look_through(self, keep, memory, progress):
         """Reads every picture. The first `keep` frames stay in memory, since they are wanted first."""
+        small = self.small_side(memory)
+
+        def pixels_and_luma(picture):
+            pixels = self.pixels(picture)
+            return pixels, encoding.shrunk_luma(pixels, small)
+
         look = Look([], 1, [], 1e-9)
         bad = BadPixels(self.count if self.shrink == 1 and not self.encoding.is_float else 0)
-        for number, (pixels, luma) in enumerate(ahead.in_order(self.pixels_and_luma, self.pictures)):
-            look.factor = max(1, max(pixels.shape[:2]) // SMALL)
+        for number, (pixels, luma) in enumerate(ahead.in_order(pixels_and_luma, self.pictures)):
+            look.factor = max(1, max(pixels.shape[:2]) // small)
             bad.look_at(number, pixels, self.encoding.largest)
             if self.encoding.is_float:
                 luma = np.nan_to_num(luma, posinf=0.0)
