@@ -108,8 +108,8 @@ __kernel void judge_tiles(__global const float4 *tiles, __global const uchar *sw
     const long i = ((long)z * count.y + ty) * count.x + tx;
     const float4 tile = tiles[i];
     const float variance = variance_at(curve, tile.z) * (1.0f + 1.0f / max((float)sweeps[i], 1.0f));
-    const uchar is_moved =
-        fabs(tile.x) > most_mean * sqrt(variance) + least || tile.y > most_square * variance + least;
+    const uchar is_far = fabs(tile.x) > most_mean * sqrt(variance) + least || tile.y > most_square * variance + least;
+    const uchar is_moved = is_far && sweeps[i] > 0; /* what was never seen did not move */
     moved[i] = is_first ? is_moved : moved[i] | is_moved;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dff {
 
@@ -65,6 +66,8 @@ DenoiseStrips::DenoiseStrips(CommandQueue &queue, const StackShape &shape, std::
     for (size_t k = 0; k < of_sweeps.size(); k++) {
         const float variances = 1.0F + 1.0F / std::max(static_cast<float>(k), 1.0F);
         of_sweeps[k] = {{std::sqrt(variances), variances}};
+        if (k == 0) /* what was never seen did not move */
+            of_sweeps[k] = {{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()}};
         const size_t share = k < 2 ? 0 : (32768 + k / 2) / k;
         of_shares[k] = k == 1 ? new_scene : static_cast<cl_short>(share);
     }

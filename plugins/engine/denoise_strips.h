@@ -32,6 +32,9 @@ public:
     DenoiseStrips(CommandQueue &queue, const StackShape &shape, std::vector<DenoisedPart> parts,
                   cl_int2 tiles);
 
+    /* Of a component that has others from now on. */
+    void set_means(size_t component, const cl::Buffer &means) { parts_[component].means = means; }
+
     /* Writes every step-th row of tiles of plane z to tiles[component]. */
     void measure(const cl::Buffer &bytes, uint32_t z, uint32_t step, const std::vector<cl::Buffer> &tiles);
 

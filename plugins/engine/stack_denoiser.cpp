@@ -111,6 +111,26 @@ struct StackDenoiser::ComponentState {
     }
     float least() const { return component.sample_bytes == 2 ? least_change * 256.0F : least_change; }
 
+    /* The same samples of all planes, elsewhere; what comes in from outside is to be seen anew. */
+    void shift(CommandQueue &queue, int right, int down, uint32_t planes)
+    {
+        const auto bytes = means.getInfo<CL_MEM_SIZE>();
+        if (!spare()) {
+            spare = queue.allocate(bytes);
+            queue.commands().enqueueFillBuffer(spare, cl_ushort{0}, 0, bytes);
+        }
+        const auto divisor = static_cast<int>(component.subsampling);
+        const int x = right / divisor * static_cast<int>(component.channels), y = down / divisor;
+        const auto part = [](int of) { return static_cast<size_t>(std::max(of, 0)); };
+        const auto size = component.sample_bytes == 2 ? sizeof(cl_float) : sizeof(cl_ushort);
+        const size_t row = component.width * size, plane = row * component.height;
+        queue.commands().enqueueCopyBufferRect(
+            means, spare, {part(x) * size, part(y), 0}, {part(-x) * size, part(-y), 0},
+            {row - static_cast<size_t>(std::abs(x)) * size, part(height - std::abs(y)), planes}, row, plane,
+            row, plane);
+        std::swap(means, spare);
+    }
+
     std::string options() const
     {
         return "-DSAMPLE_BYTES=" + std::to_string(component.sample_bytes) +
@@ -124,6 +144,7 @@ struct StackDenoiser::ComponentState {
     size_t tile_count;
     cl::Kernel measure, judge, count, average;
     cl::Buffer means, tiles, curve, rows;
+    cl::Buffer spare;                       /* of the size of `means`, once these were shifted */
     std::vector<TileDifference> host_tiles; /* of the plane that noise is learned from */
     std::vector<RowLayout> host_rows;
     std::vector<NoiseCurve> singles; /* as one picture of each plane shows it */
@@ -239,6 +260,48 @@ void StackDenoiser::background(std::span<BackgroundPart> parts)
     });
     for (size_t i = 0; i < parts.size(); i++)
         to_samples(means[i], components_[parts[i].component]->component.sample_bytes, parts[i].samples);
+}
+
+void StackDenoiser::shift(int right, int down)
+{
+    if (!has_means_ || (right == 0 && down == 0))
+        return;
+    if (std::abs(right) >= static_cast<int>(shape_.width) ||
+        std::abs(down) >= static_cast<int>(shape_.height)) {
+        forget();
+        return;
+    }
+    translate_errors(*device_, [&] {
+        for (size_t i = 0; i < components_.size(); i++) {
+            components_[i]->shift(queue_, right, down, shape_.planes);
+            if (strips_)
+                strips_->set_means(i, components_[i]->means);
+        }
+        shift_sweeps(right, down);
+        queue_.commands().enqueueWriteBuffer(sweeps_, CL_TRUE, 0, host_sweeps_.size(), host_sweeps_.data());
+    });
+}
+
+/* A tile is the mean of as many sweeps as all tiles of which it shows a part. */
+void StackDenoiser::shift_sweeps(int right, int down)
+{
+    const int across = tiles_.s[0], rows = tiles_.s[1], side = static_cast<int>(tile_pixels);
+    const auto first_of = [](int at) { return at >= 0 ? at / side : -((side - 1 - at) / side); };
+    const std::vector<uint8_t> before = std::move(host_sweeps_);
+    host_sweeps_.resize(before.size());
+    auto next = host_sweeps_.begin();
+    for (auto plane = before.begin(); plane != before.end(); plane += across * rows)
+        for (int ty = 0; ty < rows; ty++)
+            for (int tx = 0; tx < across; tx++) {
+                const int left = tx * side + right, top = ty * side + down;
+                const int x0 = first_of(left), x1 = first_of(left + side - 1);
+                const int y0 = first_of(top), y1 = first_of(top + side - 1);
+                if (x0 < 0 || y0 < 0 || x1 >= across || y1 >= rows)
+                    *next++ = 0;
+                else
+                    *next++ = std::min({plane[y0 * across + x0], plane[y0 * across + x1],
+                                        plane[y1 * across + x0], plane[y1 * across + x1]});
+            }
 }
 
 void StackDenoiser::look_at_noise(const StackView &view, uint32_t z)

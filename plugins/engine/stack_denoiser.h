@@ -49,6 +49,11 @@ public:
     /* What stands still, as the mean of the sweeps: fills the samples in. Reads back from the device. */
     void background(std::span<BackgroundPart> parts);
 
+    /* The next stack shows at pixel (x, y) what the last one showed at (x + right, y + down): all that is
+     * known moves along. Even numbers, so that chroma of half the size moves by whole samples. Throws
+     * EngineError. */
+    void shift(int right, int down);
+
     /* The next stack shows another scene: nothing before it is averaged with it. */
     void forget() { has_means_ = false; }
 
@@ -60,6 +65,7 @@ public:
 private:
     struct ComponentState;
 
+    void shift_sweeps(int right, int down);
     void upload(const StackView &view, std::span<std::byte> memory);
     void begin(const StackView &view);
     void hold(std::span<const uint8_t> held);

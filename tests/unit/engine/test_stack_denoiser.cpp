@@ -361,6 +361,68 @@ TEST_P(Formats, a_camera_that_pans_leaves_no_ghost)
     }
 }
 
+/* The camera moves by pixels that are told. */
+TEST_P(Formats, what_is_shifted_is_averaged_with_the_same_places)
+{
+    const StackShape shape{GetParam().format, 198, 150, 3};
+    const auto scene = [&](int x0, int y0) {
+        TestStack stack(shape);
+        for_each_sample(shape, [&](size_t c, const Component &of, unsigned z, unsigned x, unsigned y) {
+            const double px = (x / of.channels + 0.5) * of.subsampling + x0,
+                         py = (y + 0.5) * of.subsampling + y0;
+            const double value = 128 + 50 * std::sin(0.31 * px + 0.17 * py + z);
+            set_sample(stack, of, stack.layout[c * shape.planes + z], x, y,
+                       of.sample_bytes == 2 ? 256 * value : value);
+        });
+        return stack;
+    };
+    /* Without what came in since: 8 sweeps, and the tiles beside it. */
+    const auto inner_error = [&](const TestStack &a, const TestStack &b) {
+        double sum = 0.0, count = 0.0;
+        for_each_sample(shape, [&](size_t c, const Component &of, unsigned z, unsigned x, unsigned y) {
+            const unsigned px = x / of.channels * of.subsampling, py = y * of.subsampling;
+            if (px < 72 || px >= shape.width - 72 || py < 56 || py >= shape.height - 56)
+                return;
+            const RowLayout &rows = a.layout[c * shape.planes + z];
+            const double difference =
+                static_cast<double>(sample_of(a, of, rows, x, y)) - sample_of(b, of, rows, x, y);
+            sum += difference * difference / (of.sample_bytes == 2 ? 65536.0 : 1.0);
+            count++;
+        });
+        return sum / count;
+    };
+    for (const auto &[right, down] : {std::pair(6, -4), {-2, 2}, {8, 0}}) {
+        StackDenoiser denoiser(device_with(GetParam().style), shape);
+        double error = 0.0, told = 0.0;
+        for (int t = 0; t < 8; t++) {
+            const TestStack clean = scene(right * t, down * t);
+            TestStack stack = noisy(clean, 6.0, static_cast<unsigned>(t));
+            denoiser.shift(right, down);
+            denoise(denoiser, stack);
+            error = inner_error(stack, clean);
+            told = denoiser.report().mean_sweeps;
+        }
+        EXPECT_LT(error, 36.0 / 8 * 1.2 + 1.0 / 12) << right << ", " << down;
+        EXPECT_GT(told, 5.0);
+    }
+}
+
+TEST(StackDenoiser, what_is_shifted_out_of_the_picture_is_forgotten)
+{
+    const StackShape shape{PixelFormat::Gray8, 96, 80, 2};
+    const TestStack clean = smooth_stack(shape);
+    for (const auto &[right, down] : {std::pair(96, 0), {0, -80}, {-2000, 4000}}) {
+        StackDenoiser denoiser(Device::open(""), shape);
+        TestStack first = noisy(clean, 3.0, 1);
+        denoise(denoiser, first);
+        denoiser.shift(right, down);
+        const TestStack input = noisy(clean, 3.0, 2);
+        TestStack second = input;
+        denoise(denoiser, second);
+        EXPECT_EQ(second.memory, input.memory);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(StackDenoiser, Formats,
                          testing::Values(Case{PixelFormat::Gray8, KernelStyle::Tiles},
                                          Case{PixelFormat::Gray8, KernelStyle::Pixels},
