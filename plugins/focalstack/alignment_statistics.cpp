@@ -64,4 +64,15 @@ GstStructure *AlignmentStatistics::to_structure() const
     return structure;
 }
 
+std::string numbers_of(std::span<const PlaneAlignment> alignments, bool blank)
+{
+    std::string text;
+
+    for (std::size_t z = 0; z < alignments.size(); z++) {
+        if (!alignments[z].trusted && alignments[z].blank == blank)
+            text += (text.empty() ? "" : ", ") + std::to_string(z);
+    }
+    return text;
+}
+
 } // namespace dff

@@ -7,6 +7,7 @@
 #include <gst/gst.h>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace dff {
@@ -26,5 +27,9 @@ private:
     uint64_t bad_pixels_ = 0;
     std::vector<PlaneAlignment> planes_;
 };
+
+/* Of the planes that are not trusted because there is nothing in them, or of the others that are not: "3, 4
+ * and 7" is said as "3, 4, 7". */
+std::string numbers_of(std::span<const PlaneAlignment> alignments, bool blank);
 
 } // namespace dff

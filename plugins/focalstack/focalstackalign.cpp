@@ -31,6 +31,12 @@
  * ones, become the median of their neighbours before anything else. They are known after three parts of the
  * scene have come before them: while nothing moves they may be the scene's own.
  *
+ * Before focalstackdenoise it also undoes what a hand's shake did from stack to stack to parts of a pixel, to
+ * turn (up to 4 pixels at the corners) and zoom, and tells the rest, an even number of pixels, with each
+ * stack: a GstCustomMeta by the name GstFocalStackPlaceMeta, with the fields "anchor" (uint), "right" and
+ * "down" (int). Its pixel (x, y) shows what (x + right, y + down) of the stack `anchor` shows. The picture
+ * still follows the camera.
+ *
  * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
  * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.
  *
@@ -46,6 +52,7 @@
 
 #include "common/stack_clock.h"
 #include "common/stack_noise.h"
+#include "common/stack_place.h"
 #include "focalstack/alignment_calibration.h"
 #include "focalstack/alignment_statistics.h"
 #include "focalstack/bad_pixels.h"
@@ -53,6 +60,7 @@
 #include "focalstack/focalstackalign_properties.h"
 #include "focalstack/partial_stack.h"
 #include "focalstack/plane_placing.h"
+#include "focalstack/scene_anchor.h"
 #include "focalstack/stack_aligner.h"
 #include "focalstack/stack_pictures.h"
 
@@ -72,6 +80,8 @@ struct FocalStackAlignState {
     bool told_blank = false;
     std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
     dff::BadPixels bad_pixels;
+    bool tells_place = false; /* somebody downstream averages stacks */
+    dff::SceneAnchor anchor;  /* if so */
 
     /* Guarded by the object's lock. */
     dff::AlignSettings settings;
@@ -159,23 +169,12 @@ void place_planes(const dff::StackPictures &from, const dff::StackPictures &to,
     }
 }
 
-/* "3, 4 and 7" is said as "3, 4, 7". */
-std::string numbers_of(std::span<const dff::PlaneAlignment> alignments, bool blank)
-{
-    std::string text;
-
-    for (std::size_t z = 0; z < alignments.size(); z++) {
-        if (!alignments[z].trusted && alignments[z].blank == blank)
-            text += (text.empty() ? "" : ", ") + std::to_string(z);
-    }
-    return text;
-}
-
 /* Each cause once, until the element is started anew. */
 void tell_of_trust(GstFocalStackAlign *self, std::span<const dff::PlaneAlignment> alignments)
 {
     FocalStackAlignState &state = *self->state;
-    const std::string untrusted = numbers_of(alignments, false), blank = numbers_of(alignments, true);
+    const std::string untrusted = dff::numbers_of(alignments, false),
+                      blank = dff::numbers_of(alignments, true);
 
     GST_DEBUG_OBJECT(self, "planes not trusted: %s; without texture: %s",
                      untrusted.empty() ? "none" : untrusted.c_str(), blank.empty() ? "none" : blank.c_str());
@@ -225,12 +224,15 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
     }
     GST_FOCAL_STACK_ALIGN(base)->state->pool.emplace(info);
     GST_FOCAL_STACK_ALIGN(base)->state->bad_pixels.forget();
+    GST_FOCAL_STACK_ALIGN(base)->state->anchor.forget();
     return TRUE;
 }
 
 /* Downstream's buffers are of no use: a stack is one memory with slack at both ends. */
-gboolean decide_allocation(GstBaseTransform *, GstQuery *query)
+gboolean decide_allocation(GstBaseTransform *base, GstQuery *query)
 {
+    GST_FOCAL_STACK_ALIGN(base)->state->tells_place =
+        gst_query_find_allocation_meta(query, dff::stack_place_meta_api(), nullptr);
     while (gst_query_get_n_allocation_pools(query) > 0)
         gst_query_remove_nth_allocation_pool(query, 0);
     return TRUE;
@@ -283,6 +285,23 @@ void leave_out_bad_pixels(dff::BadPixels &known, GstBuffer *stack, dff::StackPic
     pictures.leave_out(known.places());
 }
 
+/* The same planes, as they are to be placed for somebody who averages stacks; tells where this one lies. */
+std::vector<dff::PlaneAlignment> in_scene(GstFocalStackAlign *self, const dff::StackPictures &pictures,
+                                          std::vector<dff::PlaneAlignment> alignments, GstBuffer *output)
+{
+    FocalStackAlignState &state = *self->state;
+    if (!state.tells_place || state.calibration)
+        return alignments;
+    const auto middle = static_cast<unsigned>(dff::middle_plane(alignments.size()));
+    const dff::PlaneWarp rest = state.anchor.rest_of(pictures.component(middle, 0));
+    for (dff::PlaneAlignment &alignment : alignments)
+        alignment.warp = dff::PlaneWarp(alignment.warp.matrix() * rest.matrix());
+    const cv::Point shift = state.anchor.shift();
+    GST_DEBUG_OBJECT(self, "%d pixels right of anchor %u, %d down", shift.x, state.anchor.anchors(), shift.y);
+    dff::tell_stack_place(output, {state.anchor.anchors(), shift.x, shift.y});
+    return alignments;
+}
+
 GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *output)
 {
     GstFocalStackAlign *self = GST_FOCAL_STACK_ALIGN(base);
@@ -305,7 +324,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
     try {
         leave_out_bad_pixels(self->state->bad_pixels, input, *from, info.planes);
         alignments = find_alignments(self, *from, info.planes, settings);
-        place_planes(*from, *to, alignments, settings.even_brightness);
+        place_planes(*from, *to, in_scene(self, *from, alignments, output), settings.even_brightness);
     } catch (const cv::Exception &exception) {
         GST_ELEMENT_ERROR(self, STREAM, FAILED, ("The planes of the stack cannot be warped."),
                           ("%s", exception.what()));
@@ -326,6 +345,8 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
 
 gboolean sink_event(GstBaseTransform *base, GstEvent *event)
 {
+    if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
+        GST_FOCAL_STACK_ALIGN(base)->state->anchor.forget();
     if (GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT) {
         const GstSegment *segment = nullptr;
         gst_event_parse_segment(event, &segment);
@@ -394,6 +415,7 @@ gboolean start(GstBaseTransform *base)
 gboolean stop(GstBaseTransform *base)
 {
     GST_FOCAL_STACK_ALIGN(base)->state->pool.reset();
+    GST_FOCAL_STACK_ALIGN(base)->state->anchor.forget();
     return TRUE;
 }
 

@@ -28,9 +28,10 @@
  * two sweeps to know the background, and five planes or more, taken in their order; where nothing moves, not
  * a bit changes by it.
  *
- * A hand that shakes moves everything: put focalstackalign before it only where the camera rests between the
- * shakes. The stack is changed in place where nobody else holds it. Each format of stacks will do, rolling
- * windows too.
+ * A hand that shakes moves everything: with focalstackalign before it, which tells where each stack lies, the
+ * same places of the scene are averaged; nothing is followed by `local-motion` from a sweep to another then
+ * that lies 2 pixels away or more. The stack is changed in place where nobody else holds it. Each format of
+ * stacks will do, rolling windows too.
  *
  * ## Example pipeline
  * |[
@@ -41,6 +42,7 @@
 #include "focalstack/focalstackdenoise.h"
 
 #include "common/stack_noise.h"
+#include "common/stack_place.h"
 #include "focalstack/bad_pixels.h"
 #include "focalstack/focalstackdenoise_properties.h"
 #include "focalstack/sweep_follower.h"
@@ -57,6 +59,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 GST_DEBUG_CATEGORY_STATIC(focalstackdenoise_debug);
 #define GST_CAT_DEFAULT focalstackdenoise_debug
@@ -74,6 +77,7 @@ struct FocalStackDenoiseState {
     std::unique_ptr<dff::StackDenoiser> denoiser; /* for info; empty until the first stack of these caps */
     std::unique_ptr<dff::SweepFollower> follower; /* for info, while local-motion is wanted */
     dff::BadPixels bad_pixels;
+    std::optional<dff::StackPlace> place; /* of the last stack, if focalstackalign told it */
 
     std::mutex mutex; /* guards what follows; nothing is locked under it */
     dff::DenoiseSettings settings;
@@ -228,6 +232,16 @@ void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, gu
     state.follower->follow(view, stack.memory(), *state.denoiser);
 }
 
+/* What is known goes along with a camera that shakes. Motion is followed where it rests. */
+void follow_place(FocalStackDenoiseState &state, const std::optional<dff::StackPlace> &place)
+{
+    const auto before = std::exchange(state.place, place);
+    if (!place || !before || place->anchor != before->anchor || *place == *before)
+        return;
+    state.denoiser->shift(place->right - before->right, place->down - before->down);
+    state.follower.reset();
+}
+
 void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
 {
     FocalStackDenoiseState &state = *self->state;
@@ -237,6 +251,7 @@ void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
     if (is_first)
         progress.emplace(GST_ELEMENT(self));
     ensure_denoiser(self);
+    follow_place(state, dff::stack_place(buffer));
     const guint64 absent = absent_planes(buffer);
     {
         const WritableStack stack(*state.info, buffer, *state.device);
@@ -279,7 +294,17 @@ gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
     state.denoiser.reset();
     state.follower.reset();
     state.bad_pixels.forget();
+    state.place.reset();
     return TRUE;
+}
+
+/* focalstackalign is asked where each stack lies. */
+gboolean propose_allocation(GstBaseTransform *base, GstQuery *decide_query, GstQuery *query)
+{
+    const GstBaseTransformClass *parent = GST_BASE_TRANSFORM_CLASS(gst_focal_stack_denoise_parent_class);
+    const gboolean proposed = parent->propose_allocation(base, decide_query, query);
+    gst_query_add_allocation_meta(query, dff::stack_place_meta_api(), nullptr);
+    return proposed;
 }
 
 gboolean sink_event(GstBaseTransform *base, GstEvent *event)
@@ -455,6 +480,7 @@ static void gst_focal_stack_denoise_class_init(GstFocalStackDenoiseClass *klass)
     base_class->set_caps = set_caps;
     base_class->sink_event = sink_event;
     base_class->query = query;
+    base_class->propose_allocation = propose_allocation;
     base_class->transform_ip = transform_ip;
     base_class->transform_ip_on_passthrough = FALSE;
 }

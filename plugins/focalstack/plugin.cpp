@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "common/stack_noise.h"
+#include "common/stack_place.h"
 #include "focalstack/focalstackalign.h"
 #include "focalstack/focalstackdemux.h"
 #ifdef HAVE_OPENCL
@@ -12,7 +13,9 @@
 
 static gboolean plugin_init(GstPlugin *plugin)
 {
-    dff::stack_noise_meta_name(); /* plug-ins are loaded one after the other: nobody else registers it now */
+    /* Plug-ins are loaded one after the other: nobody else registers these now. */
+    dff::stack_noise_meta_name();
+    dff::stack_place_meta_api();
     gboolean registered = FALSE;
     registered |= GST_ELEMENT_REGISTER(focalstackmux, plugin);
     registered |= GST_ELEMENT_REGISTER(focalstackdemux, plugin);

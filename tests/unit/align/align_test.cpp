@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "align_test.h"
 
+#include "common/stack_place.h"
+
 #include <gst/video/video.h>
 #include <opencv2/imgproc.hpp>
 
@@ -82,11 +84,13 @@ guint64 number_of(const GstStructure *stats, const char *name)
     return number;
 }
 
-void FocalStackAlign::start(const GstFocalStackInfo &info)
+void FocalStackAlign::start(const GstFocalStackInfo &info, bool wants_place)
 {
     info_ = info;
     Owned<GstCaps> caps(gst_focal_stack_info_to_caps(&info_));
     harness_.reset(gst_harness_new("focalstackalign"));
+    if (wants_place)
+        gst_harness_add_propose_allocation_meta(harness_.get(), dff::stack_place_meta_api(), nullptr);
     gst_harness_set_src_caps(harness_.get(), gst_caps_ref(caps.get()));
     bus_ = gst_bus_new();
     gst_element_set_bus(harness_->element, bus_);

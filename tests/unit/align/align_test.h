@@ -29,7 +29,8 @@ guint64 number_of(const GstStructure *stats, const char *name);
 /* The element with stacks of one format going in. */
 class FocalStackAlign : public testing::Test {
 protected:
-    void start(const GstFocalStackInfo &info);
+    /* `wants_place`: downstream asks where each stack lies. */
+    void start(const GstFocalStackInfo &info, bool wants_place = false);
     void TearDown() override;
 
     Owned<GstBuffer> align(GstBuffer *stack);

@@ -2,6 +2,58 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "align_test.h"
 #include "common/stack_noise.h"
+#include "common/stack_place.h"
+
+namespace {
+
+/* A part of each picture. */
+std::vector<cv::Mat> parts_of(const ShakenStack &stack, cv::Rect where)
+{
+    std::vector<cv::Mat> parts;
+    for (const cv::Mat &plane : stack.planes)
+        parts.push_back(plane(where).clone());
+    return parts;
+}
+
+} // namespace
+
+/* For focalstackdenoise. */
+TEST_F(FocalStackAlign, who_asks_is_told_where_each_stack_lies)
+{
+    const ShakenStack shaken({.size = {240, 200}, .planes = planes, .jitter = 1.0, .blur_step = 0.5});
+    start(stack_info("I420", {160, 120}), true);
+    for (const cv::Point at : {cv::Point(40, 40), {46, 32}, {20, 60}, {41, 40}}) {
+        const Owned<GstBuffer> aligned = align(new_stack(info_, parts_of(shaken, {at, cv::Size(160, 120)})));
+        const auto place = dff::stack_place(aligned.get());
+        ASSERT_TRUE(place);
+        EXPECT_EQ(place->anchor, 1U);
+        EXPECT_NEAR(place->right, at.x - 40, 1);
+        EXPECT_EQ(place->down, at.y - 40);
+        EXPECT_GT(likeness(aligned.get(), 0, 0), 0.95);
+    }
+
+    gst_harness_push_event(harness_.get(), gst_event_new_flush_start());
+    gst_harness_push_event(harness_.get(), gst_event_new_flush_stop(TRUE));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(harness_.get(), gst_event_new_segment(&segment));
+    const Owned<GstBuffer> aligned = align(new_stack(info_, parts_of(shaken, {46, 32, 160, 120})));
+    EXPECT_EQ(dff::stack_place(aligned.get()), (dff::StackPlace{2, 0, 0})) << "after a flush";
+}
+
+TEST_F(FocalStackAlign, where_nobody_asks_the_middle_plane_stays_as_it_is)
+{
+    const ShakenStack shaken({.size = {240, 200}, .planes = planes, .jitter = 1.0, .blur_step = 0.5});
+    start(stack_info("GRAY8", {160, 120}));
+    for (const cv::Point at : {cv::Point(40, 40), {46, 33}}) {
+        const std::vector<cv::Mat> parts = parts_of(shaken, {at, cv::Size(160, 120)});
+        const Owned<GstBuffer> aligned = align(new_stack(info_, parts));
+        EXPECT_FALSE(dff::stack_place(aligned.get()));
+        EXPECT_EQ(gst_buffer_memcmp(aligned.get(), middle * parts[middle].total(), parts[middle].data,
+                                    parts[middle].total()),
+                  0);
+    }
+}
 
 TEST_F(FocalStackAlign, times_and_metas_stay)
 {

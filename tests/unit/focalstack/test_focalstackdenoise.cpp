@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "common/stack_noise.h"
+#include "common/stack_place.h"
 #include "support.h"
 
 #include <algorithm>
@@ -276,6 +277,73 @@ TEST_F(FocalStackDenoise, bad_pixels_of_the_sensor_are_left_out_and_counted)
     guint64 bad = 0;
     EXPECT_TRUE(gst_structure_get(stats.get(), "bad-pixels", G_TYPE_UINT64, &bad, nullptr));
     EXPECT_EQ(bad, 2U);
+}
+
+/* A slope that moves by 6 and 4 pixels from stack to stack, as the meta tells, or another anchor each time.
+ */
+TEST_F(FocalStackDenoise, what_is_told_to_lie_elsewhere_is_averaged_there)
+{
+    for (const bool is_told : {true, false}) {
+        start("GRAY8");
+        std::vector<guint8> bytes;
+        for (int t = 0; t < 8; t++) {
+            GstBuffer *stack = new_stack(info_, next_++, 60, static_cast<unsigned>(t));
+            GstMapInfo map;
+            gst_buffer_map(stack, &map, GST_MAP_WRITE);
+            for (gsize i = 0; i < map.size; i++)
+                map.data[i] += static_cast<guint8>((i % width + 6 * t) / 2 + (i / width % height + 4 * t));
+            gst_buffer_unmap(stack, &map);
+            dff::tell_stack_place(stack, {static_cast<guint>(is_told ? 1 : t), 6 * t, 4 * t});
+            gst_harness_push(harness_.get(), stack);
+            bytes = bytes_of(Owned<GstBuffer>(gst_harness_pull(harness_.get())).get());
+        }
+        double sum = 0.0;
+        for (int y = 8; y < 24; y++)
+            for (int x = 8; x < 32; x++) {
+                const double error = bytes[static_cast<size_t>(y * width + x)] - (60 + (x + 42) / 2 + y + 28);
+                sum += error * error / (16 * 24);
+            }
+        if (is_told) {
+            EXPECT_LT(sum, 25.0 / 8 * 1.5);
+        } else {
+            EXPECT_GT(sum, 15.0);
+        }
+    }
+}
+
+namespace {
+
+/* Sweeps that are averaged at the end of a pipeline. */
+double sweeps_at_the_end(const std::string &description)
+{
+    g_autoptr(GError) error = nullptr;
+    g_autoptr(GstElement) pipeline = gst_parse_launch(description.c_str(), &error);
+    EXPECT_EQ(error, nullptr) << error->message;
+    gst_element_set_state(pipeline, GST_STATE_PLAYING);
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
+    g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
+        bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+    EXPECT_TRUE(end && GST_MESSAGE_TYPE(end) == GST_MESSAGE_EOS);
+    g_autoptr(GstElement) denoise = gst_bin_get_by_name(GST_BIN(pipeline), "denoise");
+    GstStructure *taken = nullptr;
+    g_object_get(denoise, "stats", &taken, nullptr);
+    const Owned<GstStructure> stats(taken);
+    double sweeps = 0.0;
+    gst_structure_get_double(stats.get(), "sweeps", &sweeps);
+    gst_element_set_state(pipeline, GST_STATE_NULL);
+    return sweeps;
+}
+
+} // namespace
+
+TEST(FocalStackDenoiseOfAHand, focalstackalign_before_it_finds_the_same_places_again)
+{
+    const std::string camera = "lenssweeptestsrc num-buffers=48 planes=6 shake=2 noise=strong ! "
+                               "video/x-raw,format=I420,width=320,height=240 ! focalstackmux ! ";
+    EXPECT_GT(
+        sweeps_at_the_end(camera + "focalstackalign ! queue ! focalstackdenoise name=denoise ! fakesink"),
+        3.5);
+    EXPECT_LT(sweeps_at_the_end(camera + "focalstackdenoise name=denoise ! fakesink"), 2.5);
 }
 
 TEST_F(FocalStackDenoise, a_stack_that_is_too_short_is_an_error_that_says_so)
