@@ -156,6 +156,7 @@ static gboolean send_event(GstElement *element, GstEvent *event)
     gst_event_unref(event);
     GST_OBJECT_LOCK(self);
     self->state->eos_wanted = true;
+    self->state->stop.request_stop(); /* nobody waits for the rest */
     GST_OBJECT_UNLOCK(self);
     return TRUE;
 }

@@ -102,6 +102,14 @@ private:
 
 } // namespace
 
+static bool eos_is_due(GstLensSweepTestSrc *self)
+{
+    GST_OBJECT_LOCK(self);
+    const bool wanted = self->state->eos_wanted;
+    GST_OBJECT_UNLOCK(self);
+    return wanted || self->state->stream->finished();
+}
+
 /* Throws std::exception with a user's text. */
 static GstFlowReturn render(GstLensSweepTestSrc *self)
 {
@@ -114,7 +122,7 @@ static GstFlowReturn render(GstLensSweepTestSrc *self)
         stream.render(rendering_token(self), std::ref(progress));
     }
     if (!stream.is_rendered())
-        return GST_FLOW_FLUSHING;
+        return eos_is_due(self) ? GST_FLOW_EOS : GST_FLOW_FLUSHING;
     GST_INFO_OBJECT(self, "rendered in %" GST_TIME_FORMAT, GST_TIME_ARGS(gst_util_get_timestamp() - begin));
     /* A live camera does not catch up on what it missed. */
     if (stream.is_live() && self->state->pacer.wait_until_playing())
@@ -181,14 +189,6 @@ static void take_changes(GstLensSweepTestSrc *self)
         self->state->stream->set_scene(self->state->settings.scene);
     self->state->settings_changed = false;
     GST_OBJECT_UNLOCK(self);
-}
-
-static bool eos_is_due(GstLensSweepTestSrc *self)
-{
-    GST_OBJECT_LOCK(self);
-    const bool wanted = self->state->eos_wanted;
-    GST_OBJECT_UNLOCK(self);
-    return wanted || self->state->stream->finished();
 }
 
 static GstFlowReturn produce(GstLensSweepTestSrc *self)

@@ -318,6 +318,16 @@ TEST(TestSrcStream, a_stop_while_rendering_does_not_hang)
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
+TEST(TestSrcStream, an_end_does_not_wait_for_the_rendering)
+{
+    Pipeline pipeline("lenssweeptestsrc planes=64 motion=3 noise=strong name=rig ! "
+                      "video/x-raw,width=4096,height=4096 ! fakesink rig.depth ! queue ! fakesink");
+    pipeline.set_state(GST_STATE_PLAYING);
+    g_usleep(300000);
+    gst_element_send_event(pipeline.get(), gst_event_new_eos());
+    EXPECT_EQ(pipeline.wait(), "");
+}
+
 TEST_F(FilesScene, has_the_size_of_its_image)
 {
     Pipeline pipeline(
