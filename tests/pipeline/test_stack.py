@@ -271,10 +271,36 @@ class Failing(Program):
         self.assert_fails(2, 'must end in', self.photos, '-o', self.out / 'a.gif')
         self.assert_fails(2, 'the same name', self.photos, '-o', out, '--depth', out)
         self.assert_fails(2, '6G', self.photos, '-o', out, '--memory', 'much')
-        self.assert_fails(1, 'nowhere', self.photos, '-o', self.out / 'nowhere/a.png')
+        for place, words in ((self.out / 'nowhere/a.png', 'no folder'), (self.photos / 'sub.tif', 'it is a folder')):
+            (self.photos / 'sub.tif').mkdir(exist_ok=True)
+            finished = self.assert_fails(1, words, self.photos, '-o', out, '--depth', place)
+            self.assertNotIn('Reading', finished.stderr)  # nobody waits for what cannot be written
+        (self.photos / 'sub.tif').rmdir()
         self.assert_fails(1, 'no alignment', self.photos, '-o', out, '--use-alignment', self.photos / 'p1.png')
         self.assert_fails(1, 'OpenCL', self.photos, '-o', out, OCL_ICD_VENDORS='/nonexistent')
         self.assertFalse(out.exists())
+
+    def test_a_full_disk_leaves_nothing(self):
+        self.write_sweep()
+        disk = self.out / 'disk'
+        disk.mkdir()
+        small = ['unshare', '--user', '--map-root-user', '--mount', 'sh', '-c',
+                 'mount -t tmpfs -o size=16k tmpfs "$0" && echo before >"$0/a.png" && "$@"; status=$?; ls -A "$0"; cat "$0/a.png"; exit $status']
+        for option, name in (('-o', 'a.tif'), ('-o', 'a.png'), ('-o', 'a.jpg'), ('-o', 'a.exr'), ('--cloud', 'a.ply'), ('--video', 'a.webm')):
+            finished = subprocess.run([*small, disk, PROGRAM, self.photos, option, disk / name, '--quiet'], stdout=subprocess.PIPE,
+                                      stderr=subprocess.PIPE, text=True, timeout=SECONDS, check=False)
+            with self.subTest(name):
+                self.assertEqual(finished.returncode, 1, finished.stderr)
+                self.assertIn(f'{name} cannot be written: ', finished.stderr.strip().splitlines()[-1])
+                self.assertEqual(finished.stdout, 'a.png\nbefore\n')
+
+    def test_no_picture_is_lost_to_a_result(self):
+        self.write_sweep()
+        before = (self.photos / 'p3.png').read_bytes()
+        (self.out / 'link.png').symlink_to(self.photos / 'p3.png')
+        for place in (self.photos / 'p3.png', self.out / 'link.png'):
+            self.assert_fails(1, f'{place} is one of the pictures', self.photos, '-o', self.out / 'a.tif', '--depth-code', place)
+        self.assertEqual((self.photos / 'p3.png').read_bytes(), before)
 
     def test_pictures_of_other_things_are_left_out(self):
         self.write_sweep()

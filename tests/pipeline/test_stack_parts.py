@@ -207,6 +207,18 @@ class Writing(unittest.TestCase):
                     results.write_picture(files, pathlib.Path(name, 'a.' + ending), np.zeros((64, 64, 3), np.uint8), first, 'a picture')
                 self.assertTrue(pathlib.Path(name, 'a.' + ending).exists())
 
+    def test_texts_longer_than_a_block_of_jpeg(self):
+        """At which libjpeg would end the program. Other files keep them."""
+        first = oiio.ImageSpec(64, 64, 3, oiio.UINT8)
+        first['Artist'], first['Copyright'], first['Exif:UserComment'], first['Make'] = 'A' * 70000, '&' * 30000, 'C' * 30000, 'Maker'
+        with tempfile.TemporaryDirectory() as name:
+            for ending in ('jpg', 'tif', 'png', 'exr'):
+                path = pathlib.Path(name, 'a.' + ending)
+                with results.together() as files:
+                    results.write_picture(files, path, np.zeros((64, 64, 3), np.uint8), first, 'a picture')
+                spec = pictures.pages_of(path)[0].spec
+                self.assertEqual(spec.get_string_attribute('Make'), 'Maker')
+                self.assertEqual(len(spec.get_string_attribute('Artist')) > 60000, ending != 'jpg', ending)
 
     def test_letters_of_another_code(self):
         """OpenImageIO gives them as they are in the file."""
@@ -270,6 +282,11 @@ class Seams(unittest.TestCase):
         self.assertLess(np.abs(np.diff(of_columns)).max(), 0.25, 'a step of depth from column to column')
         picture = np.abs(parts.picture.astype(float) - self.whole.picture)[inner]
         self.assertLess(picture.mean(), 1)
+
+    def test_a_disk_that_is_full_is_named(self):
+        files = solve.SlabFiles('/dev/full', RGB, (4, 4))
+        with self.assertRaisesRegex(Unusable, '/dev/full cannot hold .*TMPDIR'):
+            files.add((0, 3), self.whole)
 
     def test_of_slabs(self):
         self.assert_no_seam(self.solve(slabs.slabs_of(MANY, 14), 1))

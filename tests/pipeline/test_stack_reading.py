@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 from gathering import Sweeps
 from sweeps import CMYK, CMYK_COLOURS, SIDE, chunk, exif_saying, exif_taken_at, flat, texture, write
 
-from dff_stack import Unusable, ahead, depths, encoding, sweep
+from dff_stack import Unusable, ahead, depths, encoding, exif, sweep
 from dff_stack.progress import Progress
 
 
@@ -233,6 +233,18 @@ def write_dng(path, width, height):
     path.write_bytes(head.ljust(2048, b'\0') + pixels.tobytes())
 
 
+def write_bare_tiff(path, order, is_big, text):
+    """A TIFF or BigTIFF file of nothing but a description."""
+    data = text.encode() + b'\0'
+    if is_big:
+        head = {'<': b'II', '>': b'MM'}[order] + struct.pack(order + 'HHHQ', 43, 8, 0, 16)
+        table = struct.pack(order + 'QHHQQQ', 1, 270, 2, len(data), 16 + 36, 0)
+    else:
+        head = {'<': b'II', '>': b'MM'}[order] + struct.pack(order + 'HI', 42, 8)
+        table = struct.pack(order + 'HHHIII', 1, 270, 2, len(data), 8 + 18, 0)
+    path.write_bytes(head + table + data)
+
+
 OME = '''<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0">
 <Pixels ID="Pixels:0" DimensionOrder="XYZCT" Type="uint8" SizeX="96" SizeY="96" SizeZ="3" SizeC="{channels}" SizeT="1"
 PhysicalSizeX="0.5" PhysicalSizeY="0.5" PhysicalSizeZ="2" PhysicalSizeZUnit="µm">{planes}</Pixels></Image></OME>'''
@@ -256,6 +268,19 @@ class Ome(Sweeps):
         self.write(''.join(f'<Plane TheZ="{z}" TheC="0" TheT="0" PositionZ="{place}" PositionZUnit="mm"/>'
                            for z, place in enumerate((1, 1.5, 1.6))))
         self.assertEqual([picture.position_um for picture in self.gather()], [1000, 1500, 1600])
+
+    def test_a_long_description_is_read_to_its_end(self):
+        planes = ''.join(f'<Plane TheZ="{z}" TheC="0" TheT="0" PositionZ="{3 * z}"/>' for z in range(3))
+        self.write(f'<TiffData {"x" * 70000}="1"/>' + planes)
+        self.assertEqual([picture.position_um for picture in self.gather()], [0, 3, 6])
+        for order in '<>':
+            for is_big in (False, True):
+                write_bare_tiff(self.photos / 'a.ome.tif', order, is_big, OME.format(planes=f'<!--{"y" * 70000}-->' + planes, channels=1))
+                self.assertTrue(exif.description_of(self.photos / 'a.ome.tif').endswith('</OME>'), (order, is_big))
+
+    def test_no_planes_at_all_are_refused(self):
+        write_pages(self.photos / 'a.tif', [flat(0), flat(50)], OME.replace('SizeZ="3"', 'SizeZ="0"').format(planes='', channels=1))
+        self.assert_refused('a.tif', 'OME')
 
     def test_several_channels_are_refused(self):
         self.write(channels=3)

@@ -169,11 +169,18 @@ def check(made, options):
     return check_one(made, options)
 
 
+OUTPUTS = ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'save_alignment', 'cloud', 'mesh', 'video', 'report')
+
+
+def outputs_of(options):
+    """Where each of the wanted results goes."""
+    return {name: pathlib.Path(getattr(options, name)) for name in OUTPUTS if getattr(options, name)}
+
+
 def check_one(made, options):
     if not options.pictures:
         made.error('name the pictures, or a folder of them')
-    outputs = ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'cloud', 'mesh', 'report', 'video', 'save_alignment')
-    if not any(getattr(options, name) for name in outputs):
+    if not outputs_of(options):
         made.error('say where the result goes: -o result.tif')
     if options.output:
         try:
@@ -182,7 +189,7 @@ def check_one(made, options):
             made.error(f'argument -o/--output: {error}')
     if options.align == 'off' and (options.save_alignment or options.use_alignment):
         made.error('--align off leaves no alignment to save or to use')
-    named = [str(pathlib.Path(getattr(options, name)).resolve()) for name in outputs if getattr(options, name)]
+    named = [path.resolve() for path in outputs_of(options).values()]
     if len(set(named)) < len(named):
         made.error('two results have the same name')
 

@@ -7,8 +7,7 @@ import xml.etree.ElementTree
 
 import numpy as np
 
-from dff_stack import Unusable
-from dff_stack.pictures import text_of
+from dff_stack import Unusable, exif
 
 MICROMETRES = {'nm': 1e-3, 'µm': 1.0, 'um': 1.0, 'mm': 1e3, 'cm': 1e4, 'm': 1e6}
 
@@ -43,6 +42,8 @@ class Ome:
             raise ValueError('no pixels are described')
         self.order = pixels.get('DimensionOrder', 'XYZCT')
         self.sizes = {axis: int(pixels.get('Size' + axis, 1)) for axis in 'ZCT'}
+        if min(self.sizes.values()) < 1:
+            raise ValueError(f'sizes of {self.sizes}')
         self.pixel_um = length(pixels, 'PhysicalSizeX', 'PhysicalSizeXUnit')
         self.step_um = length(pixels, 'PhysicalSizeZ', 'PhysicalSizeZUnit')
         self.positions = {int(plane.get('TheZ')): length(plane, 'PositionZ', 'PositionZUnit')
@@ -76,7 +77,7 @@ def length(element, name, unit_name):
 
 def ome_of(pictures):
     """What the file of these pages says, or None where it is no OME-TIFF."""
-    text = text_of(pictures[0].spec, 'ImageDescription')
+    text = exif.description_of(pictures[0].path)
     if '<OME' not in text:
         return None
     try:

@@ -7,18 +7,31 @@ takes the block's tables as its own (TIFF 6.0, 2; a table is an IFD), PNG the bl
 pixels, after which many do not look (PNG, third edition, 11.3.3 and 11.3.4).
 """
 import pathlib
+import re
 import struct
-import tempfile
 import zlib
 
 import numpy as np
 import OpenImageIO as oiio
 
+from dff_stack import scratch
 from dff_stack.pictures import text_of
 
+DESCRIPTION = 270
 POINTERS = (0x8769, 0x8825)  # of a file's first table: to those of EXIF and GPS
 BYTES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # of a value of each type
 LONG = 4
+MOST_TEXT = 10000  # bytes in a JPEG file; of a block's 65,533, since the same texts in XML may be five times as long
+
+
+def fit_for_jpeg(spec):
+    """Leaves out the longest texts where all together are too long for a block of JPEG, at which libjpeg would end the program."""
+    names = [attribute.name for attribute in spec.extra_attribs if attribute.type == oiio.TypeString]
+    lengths = {name: len(text_of(spec, name).encode()) for name in names}
+    while sum(lengths.values()) > MOST_TEXT:
+        longest = max(lengths, key=lengths.get)
+        spec.erase_attribute(re.escape(longest))
+        del lengths[longest]
 
 
 def block_of(spec):
@@ -27,13 +40,13 @@ def block_of(spec):
     small.width = small.height = small.full_width = small.full_height = 8
     small.set_format(oiio.UINT8)
     small.erase_attribute('ICCProfile')
-    with tempfile.TemporaryDirectory(prefix='dff-stack-') as folder:
-        path = pathlib.Path(folder, 'a.jpg')
-        output = oiio.ImageOutput.create(str(path))
-        if not (output and output.open(str(path), small) and output.write_image(np.zeros((8, 8, small.nchannels), np.uint8))
+    fit_for_jpeg(small)
+    with scratch.file() as place:
+        output = oiio.ImageOutput.create('a.jpg')
+        if not (output and output.open(place, small) and output.write_image(np.zeros((8, 8, small.nchannels), np.uint8))
                 and output.close()):
             return b''
-        data = path.read_bytes()
+        data = pathlib.Path(place).read_bytes()
     start = data.find(b'Exif\0\0')
     if start < 4 or data[start - 4:start - 2] != b'\xff\xe1':
         return b''
@@ -103,6 +116,26 @@ def end_of(file):
     """Goes there; tables begin at even places."""
     at = file.seek(0, 2)
     return at + file.write(bytes(at % 2))
+
+
+def description_of(path):
+    """What the first page of a TIFF or BigTIFF file says of itself, in full: OpenImageIO gives 65,536 bytes. Nothing of other files."""
+    with open(path, 'rb') as file:
+        header = file.read(16)
+        order = {b'II': '<', b'MM': '>'}.get(header[:2])
+        version = struct.unpack(order + 'H', header[2:4])[0] if order and len(header) == 16 else 0
+        if version not in (42, 43):
+            return ''
+        is_big = version == 43
+        place, = struct.unpack_from(order + ('Q' if is_big else 'I'), header, 8 if is_big else 4)
+        count_as, entry_as = struct.Struct(order + ('Q' if is_big else 'H')), struct.Struct(order + ('HHQQ' if is_big else 'HHII'))
+        file.seek(place)
+        count, = count_as.unpack(file.read(count_as.size))
+        for tag, _, length, place in entry_as.iter_unpack(file.read(count * entry_as.size)):
+            if tag == DESCRIPTION and length > 8:  # shorter ones are not where the entry says, but in it
+                file.seek(place)
+                return file.read(length).rstrip(b'\0').decode(errors='replace')
+    return ''
 
 
 def beyond_ascii(spec):

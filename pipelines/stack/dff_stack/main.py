@@ -48,6 +48,13 @@ def warps_of(options, found, look, most, say, progress):
     return fitting(found, look, most, say)
 
 
+def spare(pictures, places):
+    """Refuses results in the place of pictures that they are made of."""
+    for place in places:
+        if place.exists() and any(place.samefile(picture.path) for picture in pictures):
+            raise Unusable(f'{place} is one of the pictures, and would be lost: give the result another name')
+
+
 def process(options, progress, tell):
     said = []
 
@@ -56,8 +63,12 @@ def process(options, progress, tell):
             said.append(text)
             tell(text)
 
+    places = arguments.outputs_of(options).values()
+    for place in places:  # before hours of work
+        results.check_place(place)
     engine.start()
     pictures, pixel_um = sweep.gather(options.pictures, options.order, options.far_first, say)
+    spare(pictures, places)
     if not options.quiet:
         list_pictures(pictures)
     found = sweep.Sweep(pictures, engine.has_deep_colour(), options.preview)

@@ -2,9 +2,7 @@
 # Copyright (C) 2026 the gst-plugins-dff authors
 """A surface with the picture on it, as binary glTF, which any 3D viewer opens."""
 import json
-import pathlib
 import struct
-import tempfile
 
 import numpy as np
 
@@ -38,10 +36,7 @@ def texture(colours):
     pixels = cloud.colours_of_8_bits(colours)
     if factor > 1:
         pixels = video.shrunk(np.ascontiguousarray(pixels), (pixels.shape[1] // factor, pixels.shape[0] // factor))
-    with tempfile.TemporaryDirectory(prefix='dff-stack-') as folder:
-        path = pathlib.Path(folder, 'texture.jpg')
-        results.write(path, pixels, results.plain_spec(np.ascontiguousarray(pixels), SOFTWARE), path)
-        return path.read_bytes()
+    return results.encoded(pixels, results.plain_spec(np.ascontiguousarray(pixels), SOFTWARE), 'texture.jpg')
 
 
 def surface(depth, pixel_scale, depth_scale, most_step):

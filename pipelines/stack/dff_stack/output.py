@@ -3,7 +3,7 @@
 """The results that the user asked for, from what was computed."""
 import numpy as np
 
-from dff_stack import Unusable, alignment, cloud, depths, engine, mesh, report, results, video
+from dff_stack import Unusable, alignment, arguments, cloud, depths, engine, mesh, report, results, video
 
 
 class Output:
@@ -29,11 +29,11 @@ class Output:
                 f'{"as they lie" if self.options.align == "off" else "aligned"}, method=volume, blend=sharp')
 
     def write(self, files):
-        options = self.options
-        for name in ('output', 'depth', 'depth_code', 'depth_colours', 'index', 'confidence', 'save_alignment', 'cloud', 'mesh', 'video',
-                     'report'):
-            if getattr(options, name):
-                getattr(self, f'write_{name}')(files, getattr(options, name))
+        for name, path in arguments.outputs_of(self.options).items():
+            try:
+                getattr(self, f'write_{name}')(files, path)
+            except OSError as error:
+                raise Unusable(f'{path} cannot be written: {error.strerror or error}') from error
 
     def write_output(self, files, path):
         results.write_picture(files, path, self.pixels, self.found.pictures[0].spec, self.description())
@@ -68,7 +68,11 @@ class Output:
             raise Unusable(f'{path} cannot be written: no depth is known of which to make a surface')
 
     def write_video(self, files, path):
-        video.write(files.begin(path), self.colours(), self.solved.depth, self.found.count, lambda text: None)
+        unfinished = files.begin(path)
+        try:
+            video.write(unfinished, self.colours(), self.solved.depth, self.found.count, lambda text: None)
+        except Unusable as error:  # of an element, which does not name the file
+            raise Unusable(f'{path} cannot be written: {error}') from error
 
     def write_report(self, files, path):
         title = f'{self.found.pictures[0].path.resolve().parent.name}: {self.found.pictures[0].name} to {self.found.pictures[-1].name}'

@@ -3,8 +3,6 @@
 """A page that one can send to somebody: order, alignment, evenness, depth and the picture, all in one file."""
 import base64
 import html
-import pathlib
-import tempfile
 
 import numpy as np
 
@@ -28,12 +26,9 @@ def image(pixels, longest, words):
     """An <img> that holds its own JPEG."""
     pixels = pixels[:, :, :3]
     small = video.shrunk(np.ascontiguousarray(pixels), fitted(pixels.shape[1], pixels.shape[0], longest))
-    with tempfile.TemporaryDirectory(prefix='dff-stack-') as folder:
-        path = pathlib.Path(folder, 'a.jpg')
-        spec = results.plain_spec(small, words)
-        spec['CompressionQuality'] = 85
-        results.write(path, small, spec, path)
-        data = base64.b64encode(path.read_bytes()).decode()
+    spec = results.plain_spec(small, words)
+    spec['CompressionQuality'] = 85
+    data = base64.b64encode(results.encoded(small, spec, 'a.jpg')).decode()
     return f'<img alt="{html.escape(words)}" width="{small.shape[1]}" height="{small.shape[0]}" src="data:image/jpeg;base64,{data}">'
 
 

@@ -7,7 +7,7 @@ import tempfile
 
 import numpy as np
 
-from dff_stack import ahead, alignment, engine, joining, slabs
+from dff_stack import Unusable, ahead, alignment, engine, joining, slabs
 
 
 @dataclasses.dataclass
@@ -33,8 +33,11 @@ class SlabFiles:
         return len(self.spans)
 
     def add(self, span, solved):
-        for what in ('picture', 'depth', 'confidence'):
-            np.save(self.file(what, self.count), getattr(solved, what))
+        try:
+            for what in ('picture', 'depth', 'confidence'):
+                np.save(self.file(what, self.count), getattr(solved, what))
+        except OSError as error:
+            raise Unusable(f'{self.folder} cannot hold what waits for its turn ({error}): TMPDIR names another folder') from error
         self.spans.append(span)
 
     def file(self, what, number):
