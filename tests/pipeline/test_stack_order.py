@@ -154,6 +154,16 @@ class BySharpness(unittest.TestCase):
             lumas = [np.round(100 + random.normal(0, 5, size)).astype(np.uint8) for _ in range(count)]
             self.assertIsNone(self.told(lumas, list(range(count))))
 
+    def test_shake_is_no_order_of_a_fine_long_sweep(self):
+        """Shifts change what the parts of a picture show by more than the focus does from picture to picture."""
+        random, count, parts = np.random.default_rng(1), 300, 200
+        away = np.arange(count)[:, None] - random.uniform(0, count, parts)
+        shifts = random.integers(-3, 4, (count, 2)) @ random.standard_normal((2, parts))
+        sharpness = 0.05 + 0.1 * np.exp(-(away / 40) ** 2) + random.normal(0, 0.0003, away.shape) + 0.0005 * shifts
+        self.assertIsNone(seriation.other_order(sharpness))
+        turned = np.r_[0:150, 299:149:-1]
+        self.assertIsNotNone(seriation.other_order(sharpness[turned]))
+
     def test_copies_are_told(self):
         lumas = self.sweeps['noise']
         saved_again = lumas[9] + np.random.default_rng(8).integers(0, 2, lumas[9].shape, np.uint8)

@@ -15,6 +15,8 @@ import numpy as np
 PARTS = 24        # of the longer side of a picture
 FEWEST_PIXELS = 8  # of the side of a part
 CLEAR = 0.03      # that another order must save; photographs in their order come to less than 0.01, strong noise to 0.015
+LARGE_PART = 1 / 3  # of the detour, that another order must save, or some picture must be astray by more than
+SHORT_WAY = 0.1    # of the sweep: in a fine long one shake alone takes pictures so far, and saves up to a quarter of its detour
 SHARPER = 2        # times as sharp as where it is least so becomes some part in any sweep; noise alone makes it 1.1 to 1.6 times so
 LEAST = 0.01      # that a change of the given order must save, so that noise does not change it
 NOTHING = 1e-9    # more than rounding saves
@@ -119,9 +121,14 @@ def other_order(sharpness):
     other = shortened(away, by_likeness(away), NOTHING)
     if detour(away, other) < detour(away, found) - CLEAR:
         found = other
-    if detour(away, found) > detour(away, given) - CLEAR:
+    saved = detour(away, given) - detour(away, found)
+    if saved < CLEAR:
         return None
-    return found if len(agreeing(found)) >= len(agreeing(found[::-1])) else found[::-1]
+    if len(agreeing(found)) < len(agreeing(found[::-1])):
+        found = found[::-1]
+    if saved < LARGE_PART * detour(away, given) and np.abs(found - given).max() <= SHORT_WAY * count:
+        return None
+    return found
 
 
 def two_sweeps(sharpness, other):
