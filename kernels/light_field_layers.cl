@@ -89,7 +89,7 @@ typedef float16 __attribute__((aligned(4))) float16_any;
 /* Of 16 pixels from `row` on, none is a step up from its neighbour on the side of -direction. */
 inline bool no_steps(__global const float *row, int direction, float step)
 {
-    return !any(*(__global const float16_any *)row > *(__global const float16_any *)(row - direction) + step);
+    return !any_of(*(__global const float16_any *)row > *(__global const float16_any *)(row - direction) + step);
 }
 
 /* What the grounds `left` and `right` of the pixel x, or one of them, show behind it. */
@@ -125,7 +125,7 @@ __kernel void hide(__global const uchar4 *color, __global const float *height, _
     }
 
     for (int x = 0, left = -1; x < width;) {
-        if (left < 0 && x > 0 && x + 16 <= width && all(*(__global const int16_any *)(grounds + x) < 0) &&
+        if (left < 0 && x > 0 && x + 16 <= width && !any_of(*(__global const int16_any *)(grounds + x) >= 0) &&
             no_steps(height + x, 1, step)) {
             *(__global int16_any *)(hidden_color + x) = *(__global const int16_any *)(color + x);
             *(__global float16_any *)(hidden_height + x) = *(__global const float16_any *)(height + x);

@@ -15,10 +15,6 @@
 
 #define SIDE 16
 
-/* Compilers for CPUs need to be told: a call or a short loop left in costs half the speed. */
-#ifndef INLINE /* a simulator may know better */
-#define INLINE inline __attribute__((always_inline))
-#endif
 #define UNROLL _Pragma("unroll")
 
 #define COLOUR_ONE 16
@@ -80,17 +76,6 @@ INLINE void mirror_short_ends(__global short *row, int width)
 {
     HALF_SHORTS(row - 8) = READ_HALF_SHORTS(row).s76543210;
     HALF_SHORTS(row + width) = READ_HALF_SHORTS(row + width - 8).s76543210;
-}
-
-INLINE int __attribute__((overloadable)) any_of(int8 truth)
-{
-    const long4 parts = as_long4(truth);
-    return (parts.s0 | parts.s1 | parts.s2 | parts.s3) != 0;
-}
-
-INLINE int __attribute__((overloadable)) any_of(int16 truth)
-{
-    return any_of(truth.lo | truth.hi);
 }
 
 /* exp(x), x <= 0, to 0.2 %: 2^f as a parabola on the fraction f of x log2 e; the library's is slower. 0 below -80. */

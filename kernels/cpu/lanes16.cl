@@ -5,9 +5,6 @@
  */
 typedef uint16 __attribute__((aligned(4))) uint16_any;
 
-#ifndef INLINE /* a simulator may know better */
-#define INLINE inline __attribute__((always_inline))
-#endif
 #define LANES16 (float16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
 #define OPAQUE 0xff000000u
 
@@ -28,15 +25,6 @@ INLINE void gather_pairs(__global const float *from, int16 i, float16 *first, fl
                                              PAIR(i.sf)));
     *first = (float16)(low.even, high.even);
     *second = (float16)(low.odd, high.odd);
-}
-
-/* Whether one of the lanes is set. The built-in any() looks at one after the other on PoCL. */
-inline bool any_of(int16 lanes)
-{
-    const int8 eight = lanes.lo | lanes.hi;
-    const int4 four = eight.lo | eight.hi;
-    const int2 two = four.lo | four.hi;
-    return (two.x | two.y) != 0;
 }
 
 /* The greatest of each lane and those before it. */
