@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * The same as elemental of light_field_panel.cl, for CPUs: 16 rays through one lens walk in step, see trace(), from where
- * something may stand in the way of any of them. Only those that come upon the edge of a thing are traced one by one.
+ * The same as elemental of light_field_panel.cl, for CPUs: the rays of 16 pixels walk in step, see trace(), from where something
+ * may stand in the way of any ray through their lens. Only those that come upon the edge of a thing are traced one by one.
  */
 #include "../light_field_trace.cl"
 #include "lanes16.cl"
@@ -120,32 +120,30 @@ inline float free_down_to(const Layers *layers, const Lens *lens)
     return least;
 }
 
-/* Rays through one lens in a row of the panel, which lean alike along y. Nothing stands in their way down to `from`. */
+/* 16 rays that cross the plane of zero parallax in `origin`. Nothing stands in their way down to `from`. */
 typedef struct {
-    float2 origin;
-    float16 slope_x;
-    float slope_y;
-    float from;
-} Fan;
+    Points origin, slope;
+    float16 from;
+} Rays;
 
 /* The rounded colours that 16 rays see. */
-inline uint16 trace_all(const Layers *layers, const Fan *fan)
+inline uint16 trace_all(const Layers *layers, const Rays *rays)
 {
     const int2 size = layers->size;
-    const float least = layers->heights.x, greatest = layers->heights.y, from = fan->from;
-    const Points slope = {fan->slope_x, fan->slope_y};
+    const float least = layers->heights.x, greatest = layers->heights.y;
+    const Points origin = rays->origin, slope = rays->slope;
     const int blocks = BLOCKS(size.x);
     const int16 along_x = fabs(slope.x) >= fabs(slope.y);
-    const float16 start = along_x ? fan->origin.x : fan->origin.y, lean_any = along_x ? slope.x : slope.y;
+    const float16 start = along_x ? origin.x : origin.y, lean_any = along_x ? slope.x : slope.y;
     const int16 upright = fabs(lean_any) * (greatest - least) < 1e-3f;
     const float16 lean = upright ? 1.0f : lean_any;
-    const Ways ways = {1.0f / fabs(lean), along_x ? fan->origin.y : fan->origin.x, along_x ? slope.y : slope.x,
+    const Ways ways = {1.0f / fabs(lean), along_x ? origin.y : origin.x, along_x ? slope.y : slope.x,
                        convert_float16(along_x ? size.y - 1 : size.x - 1), lean > 0.0f, along_x ? size.x - 1 : size.y - 1,
                        along_x ? 1 : size.x, along_x ? size.x : 1, along_x ? 1 : blocks, along_x ? blocks : 1};
 
-    const float16 entry = start + lean * from;
+    const float16 entry = start + lean * rays->from;
     const int16 first = convert_int16(ways.turn ? ceil(entry) : floor(entry)) ^ ways.turn;
-    const int16 last = first + convert_int16(fabs(lean) * (from - least)) + 2;
+    const int16 last = first + convert_int16(fabs(lean) * (rays->from - least)) + 2;
     const float16 q_first = (convert_float16(first ^ ways.turn) - start) / lean;
     int16 u = first, hit = 0;
     float16 height = 0.0f;
@@ -180,7 +178,6 @@ inline uint16 trace_all(const Layers *layers, const Fan *fan)
     const float16 below = heights_at(layers, &ways, u - 1, q + ways.fall);
     const float16 above = q + ways.fall - below, under = height - q;
     const float16 crossing = hit ? q + ways.fall * under / (above + under) : least;
-    const Points origin = {fan->origin.x, fan->origin.y};
     const Points place = {origin.x + slope.x * crossing, origin.y + slope.y * crossing};
     const uint16 colors = colors_at((__global const uint *)layers->color, size, place);
     const int16 torn = hit && height - below > layers->step && under * fabs(lean) > TOUCH;
@@ -206,20 +203,14 @@ inline Points hexagonal_lenses(Points p)
     return nearest;
 }
 
-#define SECTION 256 /* pixels of a row whose lenses are found at once */
-
-/* The middles of the lenses over a row's pixels from x on, pixels from the panel's `center`. */
-inline void find_lenses(int x, float py, float2 center, float4 to_lens, float4 to_panel, int hexagonal, float *middle_x,
-                        float *middle_y)
+/* The middles of the lenses over points of the panel, both from the array's middle. */
+inline Points lenses_over(Points p, float4 to_lens, float4 to_panel, int hexagonal)
 {
-    for (int i = 0; i < SECTION; i += 16) {
-        const float16 px = LANES16 + (x + i + 0.5f - center.x);
-        const Points place = {to_lens.x * px + to_lens.y * py, to_lens.z * px + to_lens.w * py};
-        const Points square = {rint(place.x), rint(place.y)};
-        const Points lens = hexagonal ? hexagonal_lenses(place) : square;
-        *(float16 *)(middle_x + i) = to_panel.x * lens.x + to_panel.y * lens.y;
-        *(float16 *)(middle_y + i) = to_panel.z * lens.x + to_panel.w * lens.y;
-    }
+    const Points place = {to_lens.x * p.x + to_lens.y * p.y, to_lens.z * p.x + to_lens.w * p.y};
+    const Points square = {rint(place.x), rint(place.y)};
+    const Points lens = hexagonal ? hexagonal_lenses(place) : square;
+    const Points middle = {to_panel.x * lens.x + to_panel.y * lens.y, to_panel.z * lens.x + to_panel.w * lens.y};
+    return middle;
 }
 
 /* How far from a lens's middle its pixels are at most along x and y, pixels of the panel. */
@@ -230,6 +221,29 @@ inline float2 half_size(float4 to_panel, int hexagonal)
     return 0.5f * sides.even + half_height * sides.odd;
 }
 
+/* The lenses over 16 pixels of the panel and down to where their rays are free. */
+typedef struct {
+    Points middle;
+    float16 from;
+} Lenses;
+
+/* Finds `from` for the lenses with these middles, where they are others than those over the row before. `origin`: where
+ * their rays cross the plane of zero parallax. */
+inline void find_free(const Layers *layers, Points middle, Points origin, float2 reach, Lenses *lenses)
+{
+    for (int i = 0; i < 16; i++) {
+        const float x = EACH(const float, middle.x)[i], y = EACH(const float, middle.y)[i];
+        if (EACH(const float, lenses->middle.x)[i] == x && EACH(const float, lenses->middle.y)[i] == y)
+            continue;
+        const Lens lens = {(float2)(EACH(const float, origin.x)[i], EACH(const float, origin.y)[i]), reach};
+        const bool again = i > 0 && EACH(const float, middle.x)[i - 1] == x && EACH(const float, middle.y)[i - 1] == y;
+        EACH(float, lenses->from)[i] = again ? EACH(const float, lenses->from)[i - 1] : free_down_to(layers, &lens);
+    }
+    lenses->middle = middle;
+}
+
+#define SECTION 16 /* times 16 pixels of a row */
+
 /* Arguments as those of elemental. Work-items (strips of rows). */
 __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_panel, float gap, int hexagonal, int flip,
                              float2 first, float2 scale, __global uchar *output, ulong stride, int channels, int2 output_size)
@@ -238,38 +252,23 @@ __kernel void elemental_rows(LAYERS, float2 center, float4 to_lens, float4 to_pa
     const int strip = (int)get_global_id(0), strips = (int)get_global_size(0);
     const float2 to_slope = (float2)(1.0f, scale.y / scale.x) * (flip ? -1.0f : 1.0f) / gap;
     const float2 reach = half_size(to_panel, hexagonal) * fabs(to_slope);
-    float middle_x[SECTION] __attribute__((aligned(64))), middle_y[SECTION] __attribute__((aligned(64)));
-    /* Of the lenses over the pixels of the row before: middles, and down to where their rays are free. */
-    float2 known[SECTION];
-    float known_from[SECTION];
+    Lenses lenses[SECTION];
     /* Neighbours in a section look at the same part of the relief, row after row. */
-    for (int section = 0; section < output_size.x; section += SECTION) {
-        const int width = min(SECTION, output_size.x - section);
-        for (int i = 0; i < width; i++)
-            known[i] = INFINITY;
+    for (int section = 0; section < output_size.x; section += 16 * SECTION) {
+        for (int i = 0; i < SECTION; i++)
+            lenses[i].middle.x = INFINITY;
         for (int y = output_size.y * strip / strips; y < output_size.y * (strip + 1) / strips; y++) {
             __global uchar *line = output + stride * (ulong)y;
-            const float py = y + 0.5f - center.y;
-            find_lenses(section, py, center, to_lens, to_panel, hexagonal, middle_x, middle_y);
-            for (int i = 0, end = 0; i < width; i = end) {
-                const float2 middle = (float2)(middle_x[i], middle_y[i]);
-                for (end = i + 1; end < min(i + 16, width) && middle_x[end] == middle.x && middle_y[end] == middle.y;)
-                    end++;
-                const float2 origin = first + scale * (middle + center - 0.5f);
-                if (known[i].x != middle.x || known[i].y != middle.y) {
-                    const Lens lens = {origin, reach};
-                    known_from[i] = free_down_to(&layers, &lens);
-                }
-                const float from = known_from[i];
-                for (int k = i; k < end; k++) {
-                    known[k] = middle;
-                    known_from[k] = from;
-                }
-                /* Lanes behind the lens look where its last pixel does; what they paint is painted over. */
-                const float16 px = min(LANES16 + (float)i, (float)(end - 1)) + (section + 0.5f - center.x);
-                const Fan fan = {origin, (middle.x - px) * to_slope.x, (middle.y - py) * to_slope.y, from};
-                const int x = section + i;
-                put_colors(line, x, min(16, output_size.x - x), channels, trace_all(&layers, &fan));
+            for (int i = 0; i < SECTION && section + 16 * i < output_size.x; i++) {
+                const int x = section + 16 * i;
+                const Points p = {min(LANES16 + (float)x, output_size.x - 1.0f) + 0.5f - center.x, y + 0.5f - center.y};
+                const Points middle = lenses_over(p, to_lens, to_panel, hexagonal);
+                const Points origin = {first.x + scale.x * (middle.x + center.x - 0.5f),
+                                       first.y + scale.y * (middle.y + center.y - 0.5f)};
+                if (any_of(middle.x != lenses[i].middle.x || middle.y != lenses[i].middle.y))
+                    find_free(&layers, middle, origin, reach, &lenses[i]);
+                const Rays rays = {origin, {(middle.x - p.x) * to_slope.x, (middle.y - p.y) * to_slope.y}, lenses[i].from};
+                put_colors(line, x, min(16, output_size.x - x), channels, trace_all(&layers, &rays));
             }
         }
     }
