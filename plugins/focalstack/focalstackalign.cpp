@@ -14,8 +14,9 @@
  *
  * A plane is trusted if its corners lie where the warp says, in all quarters of the picture, and if no other
  * shift fits as well, as on a keyboard. Of a plane that is not trusted nothing is taken: it gets the picture
- * of its neighbour, softened. A plane without texture, of which nothing can be said, goes with its
- * neighbours. Each of the two is told once, by a warning, and by `stats`.
+ * of its neighbour, softened, and the stack's meta says that it repeats that. A plane without texture, of
+ * which nothing can be said, goes with its neighbours. Each of the two is told once, by a warning, and by
+ * `stats`.
  *
  * Moved planes are resampled with Lanczos' kernel, since with a softer one noise and sharpness differ from
  * plane to plane, which is what depth from focus looks at. Size stays; what a plane does not show, farther
@@ -167,6 +168,15 @@ void place_planes(const dff::StackPictures &from, const dff::StackPictures &to,
             dff::even_brightness(aligned, alignments, from.black(i), from.step(i));
         dff::fill_hidden(aligned, alignments, from.step(i));
     }
+}
+
+/* Planes that show their neighbour's picture. */
+void tell_repeated(GstBuffer *stack, std::span<const dff::PlaneAlignment> alignments)
+{
+    GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
+    for (std::size_t z = 0; meta && z < alignments.size(); z++)
+        if (!dff::is_shown(alignments[z]))
+            meta->repeated |= guint64{1} << z;
 }
 
 /* Each cause once, until the element is started anew. */
@@ -334,6 +344,7 @@ GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *out
         return GST_FLOW_ERROR;
     }
     self->state->clock.stamp(output, info.frame);
+    tell_repeated(output, alignments);
     tell_of_trust(self, alignments);
     {
         const ObjectLock lock(self);

@@ -91,6 +91,20 @@ TEST_F(FocalStackAlign, times_and_metas_stay)
     EXPECT_EQ(gst_buffer_get_n_meta(aligned.get(), GST_VIDEO_META_API_TYPE), planes);
 }
 
+/* Nothing is taken from it: whoever averages stacks, or sends its planes on, must know. */
+TEST_F(FocalStackAlign, a_plane_that_shows_another_scene_is_said_to_repeat_its_neighbour)
+{
+    ShakenStack shaken({.size = {320, 240}, .planes = planes, .blur_step = 0.5});
+    start(stack_info("GRAY8", shaken.size));
+    cv::rotate(shaken.planes.back(), shaken.planes.back(), cv::ROTATE_180);
+    GstBuffer *stack = new_stack(info_, shaken.planes);
+    gst_buffer_add_focal_stack_meta(stack, 0, planes)->repeated = 1;
+
+    const Owned<GstBuffer> aligned = align(stack);
+    EXPECT_FALSE(planes_of(stats().get()).back().trusted);
+    EXPECT_EQ(gst_buffer_get_focal_stack_meta(aligned.get())->repeated, 1U | 1U << (planes - 1));
+}
+
 TEST_F(FocalStackAlign, stack_is_one_memory_of_its_own_with_slack)
 {
     const ShakenStack shaken(shaking);
