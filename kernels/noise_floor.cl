@@ -9,7 +9,8 @@
  *
  * so that planes are alike in noise while a place keeps what it has over all planes, which the costs go by. Where all that
  * is of one brightness has texture, as on a board of squares, n(I) is no noise: at most three times the least focus of the
- * place over all planes is added or taken.
+ * place over all planes is added or taken. Nor is it where n(I) falls deep, as from a desk to a blank wall that is brighter:
+ * a parabola that is highest at V counts from where it has fallen to 3/4 V as that.
  */
 #include "low_picture.cl"
 
@@ -18,6 +19,7 @@
 #define SHIFT 19   /* of a float's bits, to levels */
 #define LEAST_COUNT 50
 #define WHITE (3 * COLOUR_ONE * 256) /* the three colours' sum */
+#define DEEPEST_FALL 0.25f /* of V */
 #define EXCESS(noise) (3.0f - 1.8f * (noise)->t)
 
 /* Of a histogram of `count` values of focus, which a tenth is below. */
@@ -92,6 +94,10 @@ __kernel void find_curve(__global const short *focus, __global const short *smal
         add_moments(&moments, sqrt((float)count), brightness, tenth_least(counts + i * LEVELS, count));
     }
     fit_parabola(&moments, curve);
+    if (curve[2] < 0.0f) {
+        const float vertex = -0.5f * curve[1] / curve[2], most = curve[0] + 0.5f * curve[1] * vertex;
+        greatest = min(greatest, vertex + sqrt(DEEPEST_FALL * max(most, 0.0f) / -curve[2]));
+    }
     curve[3] = least;
     curve[4] = max(least, greatest);
 }

@@ -40,6 +40,43 @@ TEST(NoiseEstimate, what_is_told_is_believed)
     EXPECT_FLOAT_EQ(sigma(std::nullopt), alone);
 }
 
+/* A dark bag, a desk that has texture everywhere, and a bright blank wall, which is a little brighter from
+ * plane to plane: what the desk has is no noise that the wall lacks. */
+TEST(NoiseFloor, what_a_brighter_place_lacks_is_no_noise)
+{
+    const StackShape shape{PixelFormat::Gray8, 240, 120, 4};
+    TestStack stack(shape);
+    std::mt19937 random(7);
+    for (unsigned z = 0; z < shape.planes; z++)
+        for (unsigned y = 0; y < shape.height; y++)
+            for (unsigned x = 0; x < shape.width; x++) {
+                const unsigned darkest = x < 80 ? 20 : x < 160 ? 80 : 200 + 3 * z;
+                const unsigned spread = x < 80 ? 15 : x < 160 ? 41 : 5;
+                stack.memory[stack.layout[z].offset + stack.layout[z].stride * y + x] =
+                    static_cast<std::byte>(darkest + random() % spread);
+            }
+    CommandQueue queue(Device::open(""));
+    StackBuffer buffer(queue, shape);
+    buffer.assign(stack.view());
+    const LowShape low(shape, 2);
+    NoiseEstimate noise(queue, shape, low.scale);
+    SmallPlanes small(queue, shape, low);
+    FocusVolume focus(queue, shape, low);
+    NoiseFloor floor(queue, low);
+    noise.run(buffer);
+    small.run(buffer);
+    focus.run(buffer, noise);
+    const cl::Buffer &evened = floor.run(focus, small, noise);
+    const size_t cells = size_t{shape.planes} * low.height * low.stride;
+    const auto as_measured = read_back<cl_short>(queue, focus.volume(), cells);
+    const auto found = read_back<cl_short>(queue, evened, cells);
+    for (size_t row = 0; row < size_t{shape.planes} * low.height; row++)
+        for (int x = low.width * 2 / 3 + 2; x < low.width; x++) /* the wall */
+            ASSERT_EQ(found[row * low.stride + LowShape::side + x],
+                      as_measured[row * low.stride + LowShape::side + x])
+                << row << "," << x;
+}
+
 TEST_P(VolumeStages, decision_agrees_with_its_twins)
 {
     run_to_matching();
@@ -207,8 +244,10 @@ void VolumeStages::expect_even_noise()
     const auto curve = read_back<float>(queue, floor_stage.curve(), 5);
     const Volume focus = read_shorts(focus_stage.volume(), shape.planes, 32);
     const std::vector<float> expected = twin::noise_curve(focus, read_small());
-    EXPECT_FLOAT_EQ(curve[3], expected[3]);
-    EXPECT_FLOAT_EQ(curve[4], expected[4]);
+    const std::vector<float> limited =
+        twin::not_fallen_deep({curve[0], curve[1], curve[2], expected[3], expected[4]});
+    EXPECT_FLOAT_EQ(curve[3], limited[3]);
+    EXPECT_FLOAT_EQ(curve[4], limited[4]);
     const auto at = [](const std::vector<float> &c, float i) { return c[0] + i * (c[1] + i * c[2]); };
     for (const float i : {expected[3], 0.5f * (expected[3] + expected[4]), expected[4]})
         EXPECT_NEAR(at(curve, i), at(expected, i), 0.05f * std::abs(at(expected, i)) + 1.0f);

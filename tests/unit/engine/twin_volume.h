@@ -63,6 +63,7 @@ float fall_beside_peaks(const Volume &focus);
 Volume without_leak(const Volume &focus, float middle, float blur_step, unsigned scale, float t);
 /* c0, c1, c2 and the ends of its brightnesses, in the kernel's units of focus. */
 std::vector<float> noise_curve(const Volume &focus, const Colours &small);
+std::vector<float> not_fallen_deep(std::vector<float> curve);
 Volume even_noise(const Volume &focus, const Colours &small, const std::vector<float> &curve, float t);
 Volume doubt_nearer_side(const Volume &confidence, const Volume &u, const Volume &cost, float blur_step,
                          unsigned scale, float t);

@@ -202,7 +202,17 @@ std::vector<float> noise_curve(const Volume &focus, const Colours &small)
     for (int i = 0; i < 3; i++)
         curve.push_back(static_cast<float>(rows[i][3] / rows[i][i]));
     curve.push_back(least);
-    curve.push_back(std::max(least, greatest));
+    curve.push_back(greatest);
+    return curve;
+}
+
+std::vector<float> not_fallen_deep(std::vector<float> curve)
+{
+    if (curve[2] >= 0.0f)
+        return curve;
+    const float vertex = -curve[1] / (2.0f * curve[2]);
+    const float most = std::max(curve[0] - curve[1] * curve[1] / (4.0f * curve[2]), 0.0f);
+    curve[4] = std::max(std::min(curve[4], vertex + std::sqrt(most / (-4.0f * curve[2]))), curve[3]);
     return curve;
 }
 
