@@ -83,11 +83,26 @@ static gboolean activate_mode(GstPad *pad, GstObject *parent, GstPadMode mode, g
     return gst_pad_stop_task(pad);
 }
 
-static gboolean query(GstPad *pad, GstObject *parent, GstQuery *query)
+/* Time cannot be turned back before a camera. The default would say that it was, and leave who asked waiting
+ * for a flush. */
+static gboolean source_event(GstPad *pad, GstObject *parent, GstEvent *event)
 {
-    auto *self = GST_LENS_SWEEP_TEST_SRC(parent);
-    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY)
-        return gst_pad_query_default(pad, parent, query);
+    if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK)
+        return gst_pad_event_default(pad, parent, event);
+    gst_event_unref(event);
+    return FALSE;
+}
+
+static gboolean answer_seeking(GstQuery *query)
+{
+    GstFormat format = GST_FORMAT_UNDEFINED;
+    gst_query_parse_seeking(query, &format, nullptr, nullptr, nullptr);
+    gst_query_set_seeking(query, format, FALSE, 0, -1);
+    return TRUE;
+}
+
+static gboolean answer_latency(GstLensSweepTestSrc *self, GstQuery *query)
+{
     GST_OBJECT_LOCK(self);
     const TestStream *stream = self->state->stream.get();
     const bool known = stream != nullptr;
@@ -97,6 +112,18 @@ static gboolean query(GstPad *pad, GstObject *parent, GstQuery *query)
     if (known)
         gst_query_set_latency(query, live, latency, GST_CLOCK_TIME_NONE);
     return known;
+}
+
+static gboolean source_query(GstPad *pad, GstObject *parent, GstQuery *query)
+{
+    switch (GST_QUERY_TYPE(query)) {
+    case GST_QUERY_LATENCY:
+        return answer_latency(GST_LENS_SWEEP_TEST_SRC(parent), query);
+    case GST_QUERY_SEEKING:
+        return answer_seeking(query);
+    default:
+        return gst_pad_query_default(pad, parent, query);
+    }
 }
 
 static void put_stream(GstLensSweepTestSrc *self, std::unique_ptr<TestStream> stream)
@@ -174,7 +201,8 @@ static GstPad *request_new_pad(GstElement *element, GstPadTemplate *templ, const
         return nullptr;
     }
     GstPad *pad = gst_pad_new_from_template(templ, name);
-    gst_pad_set_query_function(pad, query);
+    gst_pad_set_event_function(pad, source_event);
+    gst_pad_set_query_function(pad, source_query);
     GST_OBJECT_LOCK(self);
     self->state->*which = pad;
     GST_OBJECT_UNLOCK(self);
@@ -225,7 +253,8 @@ static void gst_lens_sweep_test_src_init(GstLensSweepTestSrc *self)
     self->state = new GstLensSweepTestSrcState;
     self->src_pad = gst_pad_new_from_static_template(&src_template, "src");
     gst_pad_set_activatemode_function(self->src_pad, activate_mode);
-    gst_pad_set_query_function(self->src_pad, query);
+    gst_pad_set_event_function(self->src_pad, source_event);
+    gst_pad_set_query_function(self->src_pad, source_query);
     gst_element_add_pad(GST_ELEMENT(self), self->src_pad);
     GST_OBJECT_FLAG_SET(self, GST_ELEMENT_FLAG_SOURCE);
 }

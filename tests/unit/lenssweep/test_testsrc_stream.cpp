@@ -245,6 +245,27 @@ TEST(TestSrcStream, live_latency_is_one_frame)
     EXPECT_LT(minimum, GST_SECOND / 40 + 25 * GST_MSECOND) << "sinks may add their own";
 }
 
+/* Whoever was told that it is sought would wait for its flush. */
+TEST(TestSrcStream, cannot_be_sought_in)
+{
+    Pipeline pipeline("lenssweeptestsrc name=source" + small + "fakesink name=sink");
+    pipeline.set_state(GST_STATE_PAUSED);
+    gst_element_get_state(pipeline.get(), nullptr, nullptr, 5 * GST_SECOND);
+    GstElement *source = pipeline.element("source");
+    for (const char *name : {"src", "depth", "motion"}) {
+        g_autoptr(GstPad) pad = g_str_equal(name, "src") ? gst_element_get_static_pad(source, name)
+                                                         : gst_element_request_pad_simple(source, name);
+        EXPECT_FALSE(
+            gst_pad_send_event(pad, gst_event_new_seek(1.0, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                                                       GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_NONE, 0)));
+        g_autoptr(GstQuery) query = gst_query_new_seeking(GST_FORMAT_TIME);
+        ASSERT_TRUE(gst_pad_query(pad, query)) << name;
+        gboolean seekable = TRUE;
+        gst_query_parse_seeking(query, nullptr, &seekable, nullptr, nullptr);
+        EXPECT_FALSE(seekable) << name;
+    }
+}
+
 TEST(TestSrcStream, without_a_live_source_there_is_no_latency)
 {
     Pipeline pipeline("lenssweeptestsrc" + small + "fakesink name=sink");
