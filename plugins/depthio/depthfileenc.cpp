@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "depthfileenc.h"
 
+#include "common/refused_seek.h"
 #include "common/running_time.h"
 #include "matched_inputs.h"
 
@@ -166,6 +167,14 @@ static gboolean sink_event(GstAggregator *aggregator, GstAggregatorPad *pad, Gst
     return GST_AGGREGATOR_CLASS(gst_depth_file_enc_parent_class)->sink_event(aggregator, pad, event);
 }
 
+static gboolean src_event(GstAggregator *aggregator, GstEvent *event)
+{
+    if (!dff::is_refused_seek(GST_ELEMENT(aggregator), event))
+        return GST_AGGREGATOR_CLASS(gst_depth_file_enc_parent_class)->src_event(aggregator, event);
+    gst_event_unref(event);
+    return FALSE;
+}
+
 static GstFlowReturn update_src_caps(GstAggregator *aggregator, GstCaps *, GstCaps **caps)
 {
     const State &state = state_of(GST_DEPTH_FILE_ENC(aggregator));
@@ -253,6 +262,7 @@ static void gst_depth_file_enc_class_init(GstDepthFileEncClass *klass)
     G_OBJECT_CLASS(klass)->finalize = finalize;
     aggregator_class->aggregate = aggregate;
     aggregator_class->sink_event = sink_event;
+    aggregator_class->src_event = src_event;
     aggregator_class->update_src_caps = update_src_caps;
     aggregator_class->propose_allocation = propose_allocation;
     aggregator_class->create_new_pad = create_new_pad;

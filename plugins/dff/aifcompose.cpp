@@ -262,6 +262,13 @@ static gboolean gst_aif_compose_sink_event(GstAggregator *aggregator, GstAggrega
     return GST_AGGREGATOR_CLASS(gst_aif_compose_parent_class)->sink_event(aggregator, pad, event);
 }
 
+static gboolean gst_aif_compose_src_event(GstAggregator *aggregator, GstEvent *event)
+{
+    if (const auto taken = GST_AIF_COMPOSE(aggregator)->state->src_event(event))
+        return *taken;
+    return GST_AGGREGATOR_CLASS(gst_aif_compose_parent_class)->src_event(aggregator, event);
+}
+
 static gboolean gst_aif_compose_sink_query(GstAggregator *aggregator, GstAggregatorPad *pad, GstQuery *query)
 {
     return GST_AIF_COMPOSE(aggregator)->state->answer(query) ||
@@ -333,6 +340,7 @@ static void gst_aif_compose_class_init(GstAifComposeClass *klass)
     aggregator_class->aggregate = gst_aif_compose_aggregate;
     aggregator_class->update_src_caps = gst_aif_compose_update_src_caps;
     aggregator_class->sink_event = gst_aif_compose_sink_event;
+    aggregator_class->src_event = gst_aif_compose_src_event;
     aggregator_class->sink_query = gst_aif_compose_sink_query;
     aggregator_class->src_query = gst_aif_compose_src_query;
     aggregator_class->propose_allocation = dff::DepthComposer::propose_allocation;

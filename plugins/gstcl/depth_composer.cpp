@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "gstcl/depth_composer.h"
 
+#include "common/refused_seek.h"
 #include "common/running_time.h"
 #include "gstcl/engine_message.h"
 
@@ -146,6 +147,14 @@ std::optional<bool> DepthComposer::sink_event(GstAggregatorPad *pad, GstEvent *e
             gst_aggregator_update_segment(element_, segment);
     }
     return std::nullopt;
+}
+
+std::optional<bool> DepthComposer::src_event(GstEvent *event)
+{
+    if (!is_refused_seek(GST_ELEMENT(element_), event))
+        return std::nullopt;
+    gst_event_unref(event);
+    return false;
 }
 
 gboolean DepthComposer::propose_allocation(GstAggregator *, GstAggregatorPad *, GstQuery *, GstQuery *query)

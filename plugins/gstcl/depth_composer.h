@@ -24,12 +24,14 @@ public:
     DepthComposer(const DepthComposer &) = delete;
     DepthComposer &operator=(const DepthComposer &) = delete;
 
-    /* The aggregator's functions of these names. sink_event takes caps and returns empty for what the base
-     * class has to see. answer() is for the queries of all pads, and false where the base class answers. */
+    /* The aggregator's functions of these names. sink_event takes caps, src_event what cannot be sought, and
+     * both return empty for what the base class has to see. answer() is for the queries of all pads, and
+     * false where the base class answers. */
     bool start();
     void stop();
     GstFlowReturn aggregate();
     std::optional<bool> sink_event(GstAggregatorPad *pad, GstEvent *event);
+    std::optional<bool> src_event(GstEvent *event);
     bool answer(GstQuery *query) const { return device_.answer(query); }
     static gboolean propose_allocation(GstAggregator *aggregator, GstAggregatorPad *pad,
                                        GstQuery *decide_query, GstQuery *query);

@@ -315,6 +315,13 @@ static gboolean gst_light_field_compose_sink_event(GstAggregator *aggregator, Gs
     return GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->sink_event(aggregator, pad, event);
 }
 
+static gboolean gst_light_field_compose_src_event(GstAggregator *aggregator, GstEvent *event)
+{
+    if (const auto taken = GST_LIGHT_FIELD_COMPOSE(aggregator)->state->src_event(event))
+        return *taken;
+    return GST_AGGREGATOR_CLASS(gst_light_field_compose_parent_class)->src_event(aggregator, event);
+}
+
 static gboolean gst_light_field_compose_sink_query(GstAggregator *aggregator, GstAggregatorPad *pad,
                                                    GstQuery *query)
 {
@@ -389,6 +396,7 @@ static void gst_light_field_compose_class_init(GstLightFieldComposeClass *klass)
     aggregator_class->fixate_src_caps = gst_light_field_compose_fixate_src_caps;
     aggregator_class->negotiated_src_caps = gst_light_field_compose_negotiated_src_caps;
     aggregator_class->sink_event = gst_light_field_compose_sink_event;
+    aggregator_class->src_event = gst_light_field_compose_src_event;
     aggregator_class->sink_query = gst_light_field_compose_sink_query;
     aggregator_class->src_query = gst_light_field_compose_src_query;
     aggregator_class->propose_allocation = dff::DepthComposer::propose_allocation;

@@ -208,6 +208,20 @@ TEST(AifCompose, a_picture_that_nobody_after_it_takes_is_an_error_and_no_hang)
     EXPECT_NE(outcome.error.find("videoconvert"), std::string::npos) << outcome.error;
 }
 
+TEST(AifCompose, pictures_come_after_a_seek_that_the_source_refuses)
+{
+    TestPipeline pipeline(graph("lenssweeptestsrc ! video/x-raw,width=128,height=96 ! focalstackmux"));
+    pipeline.play();
+    for (int k = 0; k < 3; k++)
+        gst_sample_unref(pipeline.pull("out"));
+    gst_element_seek_simple(pipeline.bin(), GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, 0);
+    for (int k = 0; k < 40; k++) { /* more than were on their way */
+        GstSample *sample = pipeline.pull("out");
+        ASSERT_NE(sample, nullptr) << "picture " << k;
+        gst_sample_unref(sample);
+    }
+}
+
 TEST(AifCompose, depth_of_another_size_is_an_error_that_names_both)
 {
     const Outcome outcome =
