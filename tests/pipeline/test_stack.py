@@ -294,6 +294,18 @@ class Failing(Program):
                 self.assertIn(f'{name} cannot be written: ', finished.stderr.strip().splitlines()[-1])
                 self.assertEqual(finished.stdout, 'a.png\nbefore\n')
 
+    def test_names_of_any_bytes_stay_on_their_line(self):
+        self.write_sweep()
+        (self.photos / 'p1.png').rename(self.photos / 'p1\n\x1b[2J%s.png')
+        finished = self.stack(self.photos, '-o', self.out / 'a\nb.png')
+        self.assertEqual(finished.stdout.splitlines()[1].split()[1], r'p1\n\x1b[2J%s.png')
+        self.assertTrue((self.out / 'a\nb.png').exists())
+        for name, words in ((b'p2\n.png', r'p2\n.png cannot be read'), (b'a\xff.png', r'a\udcff.png cannot be read: its name is not UTF-8')):
+            bad = pathlib.Path(os.fsdecode(os.fsencode(self.photos) + b'/' + name))
+            bad.write_bytes(b'no picture')
+            self.assert_fails(1, words, self.photos, '-o', self.out / 'a.png')
+            bad.unlink()
+
     def test_no_picture_is_lost_to_a_result(self):
         self.write_sweep()
         before = (self.photos / 'p3.png').read_bytes()

@@ -207,6 +207,16 @@ class Writing(unittest.TestCase):
                     results.write_picture(files, pathlib.Path(name, 'a.' + ending), np.zeros((64, 64, 3), np.uint8), first, 'a picture')
                 self.assertTrue(pathlib.Path(name, 'a.' + ending).exists())
 
+    def test_links_stay_links(self):
+        with tempfile.TemporaryDirectory() as name:
+            elsewhere, link = pathlib.Path(name, 'there/b.json'), pathlib.Path(name, 'a.json')
+            elsewhere.parent.mkdir()
+            link.symlink_to('there/b.json')
+            with results.together() as files:
+                files.begin(link).write_text('written')
+            self.assertTrue(link.is_symlink())
+            self.assertEqual(elsewhere.read_text(), 'written')
+
     def test_texts_longer_than_a_block_of_jpeg(self):
         """At which libjpeg would end the program. Other files keep them."""
         first = oiio.ImageSpec(64, 64, 3, oiio.UINT8)

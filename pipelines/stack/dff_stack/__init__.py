@@ -19,6 +19,11 @@ def one_line(text):
     return ' '.join(str(text).split())
 
 
+def printable(text):
+    """On one line, whatever bytes the names of files have in them."""
+    return ''.join(letter if letter.isprintable() else letter.encode('unicode_escape').decode() for letter in str(text))
+
+
 def listed(names, most=8):
     """'a, b and c', or the first few and how many there are."""
     names = [str(name) for name in names]

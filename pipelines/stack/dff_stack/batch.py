@@ -11,7 +11,7 @@ import pathlib
 import subprocess
 import sys
 
-from dff_stack import Unusable, memory, pictures
+from dff_stack import Unusable, memory, pictures, printable
 from dff_stack.progress import spoken
 
 RETRIES = 3  # of a stack whose worker died
@@ -135,7 +135,7 @@ def run(options, progress, say):
 
 
 def print_table(stacks, failed, seconds):
-    width = max(len(stack.name) for stack in stacks)
+    width = max(len(printable(stack.name)) for stack in stacks)
     for stack in stacks:
-        print(f'{stack.name:{width}}  {"FAILED: " + failed[stack.name] if stack.name in failed else stack.picture}')
+        print(f'{printable(stack.name):{width}}  {"FAILED: " + failed[stack.name] if stack.name in failed else printable(stack.picture)}')
     print(f'{len(stacks) - len(failed)} stacks done, {len(failed)} failed, {spoken(seconds)}')

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 
-from dff_stack import Unusable, alignment, arguments, batch, depths, engine, listed, memory, order, output, results, slabs, solve, sweep
+from dff_stack import Unusable, alignment, arguments, batch, depths, engine, listed, memory, order, output, printable, results, slabs, solve, sweep
 from dff_stack.progress import Progress, spoken
 
 INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
@@ -15,7 +15,7 @@ INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 def list_pictures(pictures):
     for number, picture in enumerate(pictures, 1):
-        print(f'   {number:2}  {picture}', flush=True)
+        print(f'   {number:2}  {printable(picture)}', flush=True)
 
 
 def fitting(found, look, most, say):
@@ -123,7 +123,7 @@ def main(arguments_=None):
             return 1 if batch.run(options, progress, say) else 0
         process(options, progress, say)
     except (Unusable, OSError, MemoryError, UnicodeError) as error:
-        print(f'\ndff-stack: {error or "there is not enough memory: see --memory"}', file=sys.stderr)
+        print(f'\ndff-stack: {printable(error) or "there is not enough memory: see --memory"}', file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print('\ndff-stack: stopped; nothing was written', file=sys.stderr, flush=True)

@@ -71,7 +71,7 @@ class Output:
         unfinished = files.begin(path)
         try:
             video.write(unfinished, self.colours(), self.solved.depth, self.found.count, lambda text: None)
-        except Unusable as error:  # of an element, which does not name the file
+        except (Unusable, UnicodeError) as error:  # of elements, which do not name the file
             raise Unusable(f'{path} cannot be written: {error}') from error
 
     def write_report(self, files, path):

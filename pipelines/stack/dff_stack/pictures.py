@@ -104,6 +104,10 @@ def focus_distance(spec):
 def open_file(path):
     if path.exists() and not path.is_file():  # a pipe is opened only when somebody writes into it
         raise Unusable(f'{path} cannot be read: it is not a file')
+    try:
+        str(path).encode()
+    except UnicodeEncodeError as error:  # OpenImageIO takes no other names
+        raise Unusable(f'{path} cannot be read: its name is not UTF-8; rename it') from error
     settings = oiio.ImageSpec()
     settings['oiio:UnassociatedAlpha'] = 1  # colours must not fade to black where they are transparent
     settings['raw:ColorSpace'] = 'sRGB'

@@ -4,6 +4,8 @@
 import sys
 import time
 
+from dff_stack import printable
+
 BAR = 24
 EVERY_S = 0.2
 
@@ -53,7 +55,7 @@ class Progress:
         """A line above the bar."""
         if self.on_terminal:
             print('\r\033[K', end='', file=self.stream)
-        print(text, file=self.stream, flush=True)
+        print(printable(text), file=self.stream, flush=True)
         if self.on_terminal and self.text:
             self.draw()
 

@@ -19,9 +19,14 @@ OF_THE_FILE = ('oiio:.*', 'jpeg:.*', 'tiff:.*', 'png:.*', 'openexr:.*', 'raw:.*'
                'thumbnail.*', 'CompressionQuality', 'textureformat', 'Exif:PixelXDimension', 'Exif:PixelYDimension')
 
 
+def place_of(path):
+    """Where a file lies: through a link, where that leads."""
+    return path.resolve() if path.is_symlink() else path.absolute()
+
+
 def check_place(path):
     """Whether a file can be there."""
-    folder = path.absolute().parent
+    folder = place_of(path).parent
     if not folder.is_dir():
         raise Unusable(f'{path} cannot be written: there is no folder {folder}')
     if path.is_dir():
@@ -39,6 +44,7 @@ class Files:
     def begin(self, path):
         path = pathlib.Path(path)
         check_place(path)
+        path = place_of(path)
         unfinished = path.with_name(f'.{path.stem}.{os.getpid()}.unfinished{path.suffix}')
         self.pending.append((unfinished, path))
         return unfinished
