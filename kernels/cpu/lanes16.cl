@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
- * What rays that are followed 16 in step have in common.
+ * What kernels of light fields that compute 16 pixels in step have in common.
  */
 typedef uint16 __attribute__((aligned(4))) uint16_any;
 
