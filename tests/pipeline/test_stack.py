@@ -5,6 +5,7 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import struct
 import subprocess
@@ -114,6 +115,17 @@ class Results(Program):
         self.assertNotIn('src="http', page)
         self.assertIn('6 p5.png', page)
         self.assertTrue((self.out / 'v.webm').read_bytes().startswith(b'\x1aE\xdf\xa3'))
+
+    def test_the_index_counts_as_the_list_does_where_a_picture_is_left_out(self):
+        self.write_sweep()
+        shutil.copy(self.photos / 'p2.png', self.photos / 'p2-copy.png')
+        finished = self.stack(self.photos, '--index', self.out / 'i.png')
+        listed = {int(line.split()[0]): line.split()[1] for line in finished.stdout.splitlines() if line.split()[0].isdecimal()}
+        without = [number for number, name in listed.items() if name not in ('p2.png', 'p2-copy.png')]
+        _, index = read(self.out / 'i.png')
+        self.assertEqual([listed[number] for number in np.unique(index) if number in without], ['p0.png', 'p1.png', 'p3.png', 'p4.png', 'p5.png'])
+        self.assertEqual(len(np.unique(index)), PLANES)
+        self.assertEqual(listed[int(np.median(index[:, -3:]))], 'p5.png')
 
     def assert_mesh(self, data):
         """A surface whose left is nearest to the viewer."""

@@ -30,7 +30,8 @@ RESULTS
   --depth   TIFF and EXR: numbers with a point, NaN where depth is not known. They are micrometres where the step between
             pictures is known: from --step, or from an OME-TIFF; else plane numbers, 0 for the first picture of the order.
             PNG: 16 bits; the description in the file says what a pixel means, 0 is not known.
-  --index   of each pixel the number of the picture in which it is sharp, 1 for the first of the order, 0 where not known.
+  --index   of each pixel the number of the picture in which it is sharp, 1 for the first of the order, 0 where not known. Those
+            that are left out are counted too, as in the list at the start; plane numbers of --depth do not count them.
   --cloud, --mesh  in micrometres where the step and the size of a pixel are known; else the depth is stretched to a fifth of the
             width. The mesh is one unit wide, and torn where depth jumps.
 

@@ -14,8 +14,8 @@ INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 
 def list_pictures(pictures):
-    for number, picture in enumerate(pictures, 1):
-        print(f'   {number:2}  {printable(picture)}', flush=True)
+    for picture in pictures:
+        print(f'   {picture.number:2}  {printable(picture)}', flush=True)
 
 
 def fitting(found, look, most, say):

@@ -48,7 +48,9 @@ class Output:
         results.write_colours(files, path, self.depth_colours(), 'depth: warm is near, black is not known')
 
     def write_index(self, files, path):
-        numbers = np.nan_to_num(np.round(self.solved.depth) + 1).astype(np.int64)
+        of_planes = np.array([picture.number for picture in self.found.pictures])
+        planes = np.round(np.nan_to_num(self.solved.depth)).astype(np.int64)
+        numbers = np.where(np.isnan(self.solved.depth), 0, of_planes[planes])
         results.write_numbers(files, path, numbers, 'number of the picture in which a pixel is sharp, 0 is not known')
 
     def write_confidence(self, files, path):

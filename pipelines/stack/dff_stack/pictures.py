@@ -50,6 +50,7 @@ class Picture:
             self.time += '.' + text_of(spec, 'Exif:SubsecTimeOriginal')
         self.distance_m = focus_distance(spec)
         self.position_um = None  # along the axis, where the file says so
+        self.number = None       # in the list of all, from 1
 
     @property
     def name(self):

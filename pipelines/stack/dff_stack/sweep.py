@@ -34,6 +34,8 @@ def gather(paths, chosen_order, far_first, say):
                        f'a focus sweep has 2 or more')
     found = order.nearest_first(found, chosen_order, far_first, say)
     pictures.check_sizes(found)
+    for number, picture in enumerate(found, 1):
+        picture.number = number
     return found, pixel_um
 
 
