@@ -50,16 +50,11 @@ void add_pair(const cv::Mat1f &first, const cv::Mat1f &second, const cv::Mat1f &
 }
 
 /* Around each pixel, and fainter around that. */
-void pool(cv::Mat3f &squares, cv::Mat2f &products)
+template <typename Pixel> void pool(cv::Mat_<Pixel> &sums)
 {
-    cv::Mat near[2], far[2];
-    in_parallel(4, [&](unsigned i) {
-        const bool is_far = i / 2 == 1;
-        const cv::Mat &sums = i % 2 == 0 ? static_cast<const cv::Mat &>(squares) : products;
-        soften(sums, is_far ? 3.0 * pooled : pooled, (is_far ? far : near)[i % 2]);
-    });
-    squares = near[0] + far_weight * far[0];
-    products = near[1] + far_weight * far[1];
+    cv::Mat near, far;
+    in_parallel(2, [&](unsigned i) { soften(sums, i == 0 ? pooled : 3.0 * pooled, i == 0 ? near : far); });
+    sums = near + far_weight * far;
 }
 
 /* The velocity's error, of the equations' sums. */
@@ -120,7 +115,8 @@ void refine_velocity(const SmallStack &sweep, const cv::Rect &where, const cv::M
     cv::Mat2f products = cv::Mat2f::zeros(where.size());
     for (size_t z = 0; z + apart < lumas.size(); z++)
         add_pair(lumas[z], lumas[z + apart], weight, squares, products);
-    pool(squares, products);
+    pool(squares);
+    pool(products);
     for (int y = 0; y < velocity.rows; y++)
         for (int x = 0; x < velocity.cols; x++)
             velocity(y, x) += step_of(squares(y, x), products(y, x));
