@@ -64,7 +64,11 @@ float BlurStep::step_of(std::span<const Fall> falls)
             step = scale * softened * std::exp2(log_step_of(rho));
         }
         /* Coarser scales tell more of little, and nothing of what is no blur. */
-        const bool rises = i + 1 < falls.size() && falls[i + 1].rho > rho + least_rise;
+        const bool rises =
+            std::adjacent_find(falls.begin() + static_cast<std::ptrdiff_t>(i), falls.end(),
+                               [](const Fall &finer, const Fall &coarser) {
+                                   return coarser.rho > finer.rho + least_rise && coarser.rho <= 1.0f;
+                               }) != falls.end();
         if (rho >= most_telling || (rho > noise_alone && !rises))
             break;
     }

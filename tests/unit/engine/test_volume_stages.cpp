@@ -77,6 +77,23 @@ TEST(NoiseFloor, what_a_brighter_place_lacks_is_no_noise)
                 << row << "," << x;
 }
 
+/* Falls as photographs of a circuit board have them, farther apart by 16 to 20 pixels: glints keep the finest
+ * scale from falling to nothing, and the next one is as narrow. */
+TEST(BlurStep, scales_that_rise_later_tell_it)
+{
+    const std::vector<BlurStep::Fall> board{
+        {1.0f, 0.256f, 1.0f}, {4.0f, 0.275f, 1.0f}, {8.0f, 0.577f, 1.0f}, {16.0f, 0.840f, 1.0f}};
+    EXPECT_NEAR(BlurStep::step_of(board), 18.0f, 2.0f);
+}
+
+/* What falls alike on all scales is no blur. */
+TEST(BlurStep, nothing_that_rises_is_read_on_the_finest_scale)
+{
+    const std::vector<BlurStep::Fall> alike{
+        {1.0f, 0.30f, 1.0f}, {4.0f, 0.32f, 1.0f}, {8.0f, 0.35f, 1.0f}, {16.0f, 0.37f, 1.0f}};
+    EXPECT_NEAR(BlurStep::step_of(alike), 4.0f, 0.1f);
+}
+
 TEST_P(VolumeStages, decision_agrees_with_its_twins)
 {
     run_to_matching();
