@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 import OpenImageIO as oiio
@@ -300,6 +301,21 @@ class Seams(unittest.TestCase):
 
     def test_of_slabs(self):
         self.assert_no_seam(self.solve(slabs.slabs_of(MANY, 14), 1))
+
+    def test_what_is_said_of_slabs_that_are_joined_is_not_told(self):
+        """The pictures of two slabs may be equally sharp everywhere without anything being wrong."""
+        told = []
+
+        def solve_slab(source, span, kept, warps, plan, work):
+            work.tell(f'of {source.count}')
+            return self.whole
+
+        def plan_of(source, warps, work):
+            return slabs.Plan([(0, 4), (2, 6)] if source.count > 2 else [(0, 2)], [slabs.Tile(0, 0, *source.size)], 0)
+
+        with mock.patch.object(solve, 'solve_slab', solve_slab), mock.patch.object(solve, 'plan_of', plan_of):
+            solve.solve(Arrays(self.planes[:6]), None, solve.Work(GIB, False, Progress(quiet=True), told.append))
+        self.assertEqual(told, ['of 6', 'of 6'])
 
     def test_memory_does_not_grow_from_slab_to_slab(self):
         def resident():  # of our own: pages of files come and go as the system likes

@@ -112,5 +112,6 @@ def solve(source, warps, work, level=1):
             kept = range(*plan.slabs[number + 1]) if number + 1 < len(plan.slabs) else ()
             files.add(span, solve_slab(source, span, kept, warps, plan, work))
         still = [np.eye(3)] * files.count if work.even else None
-        upper = solve(files, still, work, level + 1)
+        quiet = dataclasses.replace(work, tell=lambda text: None)  # slabs may be equally sharp everywhere
+        upper = solve(files, still, quiet, level + 1)
         return joining.join(files, upper)
