@@ -110,10 +110,10 @@ class Reading(Sweeps):
 
     def assert_colours(self, expected, kind):
         """To one percent, in the middle of fields of 16x16 pixels."""
-        found, frames = self.frames(has_deep_colour=True)
+        found = sweep.Sweep(self.gather(), True, False)
         formats = {('u1', 1): 'GRAY8', ('u2', 1): 'GRAY16_LE', ('u1', 3): 'RGB', ('u2', 3): 'RGBA64_LE'}
         self.assertEqual(found.encoding.format, formats[kind, expected.shape[2]])
-        shown = found.encoding.decode(frames[0])
+        shown = found.encoding.decode(found.read(0))
         self.assertEqual(shown.shape, expected.shape)
         self.assertLess(np.abs(shown.astype(float) - expected)[8::16, 8::16].max(), 0.01 * np.iinfo(kind).max)
 
