@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""photographs.py FOLDER COUNT [WIDTH HEIGHT]: a focus sweep of JPEG pictures, for dff-stack to be measured with.
+"""photographs.py FOLDER COUNT [WIDTH HEIGHT [BLUR]]: a focus sweep of JPEG pictures, for dff-stack to be measured with.
 
 A scene of 1500x1000 pixels, hills with a step in them, is repeated until the picture is full. Each picture is shifted by up to
-three pixels and is up to two percent brighter or darker. FOLDER/truth.npy is the depth of the scene in plane numbers.
+three pixels and is up to two percent brighter or darker. Things at one end of the sweep are blurred by BLUR pixels (36) when the
+other end is sharp. FOLDER/truth.npy is the depth of the scene in plane numbers.
 """
 import pathlib
 import sys
@@ -13,7 +14,6 @@ import numpy as np
 import OpenImageIO as oiio
 
 SIZE = 1500, 1000
-BLUR = 36.0    # pixels, at the other end of the sweep
 LEVELS = 120   # of blur that are computed; others are mixed
 
 
@@ -37,9 +37,9 @@ def depth(count):
     return np.clip(hills, 0, 1) * (count - 1)
 
 
-def blurred_levels(picture):
+def blurred_levels(picture, most):
     spectrum = np.fft.rfft2(picture, axes=(0, 1))
-    return np.stack([gaussian(spectrum, BLUR / 2 * level / (LEVELS - 1)).clip(0, 255).astype(np.float16) for level in range(LEVELS)])
+    return np.stack([gaussian(spectrum, most / 2 * level / (LEVELS - 1)).clip(0, 255).astype(np.float16) for level in range(LEVELS)])
 
 
 def write(path, pixels):
@@ -49,17 +49,17 @@ def write(path, pixels):
     assert output.open(str(path), spec) and output.write_image(pixels) and output.close(), output.geterror()
 
 
-def main(folder, count, width=6000, height=4000):
+def main(folder, count, width=6000, height=4000, blur=36):
     folder, count, width, height = pathlib.Path(folder), int(count), int(width), int(height)
     folder.mkdir(parents=True, exist_ok=True)
     random = np.random.default_rng(1)
-    levels, truth = blurred_levels(scene(random)), depth(count)
+    levels, truth = blurred_levels(scene(random), float(blur)), depth(count)
     np.save(folder / 'truth.npy', truth.astype(np.float32))
     rows, columns = np.indices(truth.shape)
     for number in range(count):
-        blur = np.abs(truth - number) / (count - 1) * (LEVELS - 1)
-        low = np.minimum(blur.astype(int), LEVELS - 2)
-        part = (blur - low)[:, :, None].astype(np.float32)
+        level = np.abs(truth - number) / (count - 1) * (LEVELS - 1)
+        low = np.minimum(level.astype(int), LEVELS - 2)
+        part = (level - low)[:, :, None].astype(np.float32)
         picture = (1 - part) * levels[low, rows, columns] + part * levels[low + 1, rows, columns]
         picture = picture * random.uniform(0.98, 1.02) + random.normal(0, 1, picture.shape)
         repeated = np.tile(picture.clip(0, 255).astype(np.uint8), (-(-height // SIZE[1]), -(-width // SIZE[0]), 1))
