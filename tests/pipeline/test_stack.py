@@ -48,6 +48,14 @@ def exif_of(path):
     return found
 
 
+def predictor(path):
+    """What a TIFF file tells of the differences between neighbours that stand in it for values: 1 is none."""
+    data = path.read_bytes()
+    at = struct.unpack_from('<I', data, 4)[0]
+    entries = (struct.unpack_from('<HHIH', data, at + 2 + 12 * k) for k in range(struct.unpack_from('<H', data, at)[0]))
+    return {tag: value for tag, _, _, value in entries}.get(317, 1)
+
+
 def read(path):
     image = oiio.ImageInput.open(str(path))
     assert image, oiio.geterror()
@@ -170,6 +178,12 @@ class Results(Program):
         self.assertLess(np.abs(pixels.astype(float) - (ramp + sharp() * 8) / scale)[16:-16, 16:-16].mean(), slack)
         if scale == 1:
             self.assertGreater(len(np.unique(pixels[:, :, 0])), 4096)
+
+    def test_a_plain_reader_takes_its_tiff(self):
+        """ImageJ takes the differences of deflated 16-bit and float pictures for values, and tifffile alone refuses the latter."""
+        self.write_sweep('tif', 200, np.uint16)
+        self.stack(self.photos, '-o', self.out / 'a.tif', '--depth', self.out / 'z.tif', '--align', 'off')
+        self.assertEqual([predictor(self.out / name) for name in ('a.tif', 'z.tif')], [1, 1])
 
     def test_exif_and_profile_are_kept(self):
         profile = struct.pack('>I4xI4s4s4s', 256, 0x04000000, b'mntr', b'RGB ', b'XYZ ').ljust(36, b'\0') + b'acsp'

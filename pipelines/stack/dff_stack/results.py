@@ -105,6 +105,8 @@ def compress_quickly(spec, name):
     if name.suffix.lower() in ('.tif', '.tiff'):
         spec['compression'] = 'lzw' if spec.format.basetype == oiio.UINT8 else 'zip'
         spec['tiff:zipquality'] = 1
+        if spec['compression'] == 'zip':  # its differences are not undone by ImageJ, nor those of floats by tifffile alone
+            spec['tiff:predictor'] = 1
     elif name.suffix.lower() == '.png':
         spec['png:compressionLevel'] = 1
 
