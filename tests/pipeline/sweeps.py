@@ -58,6 +58,20 @@ def write(path, pixels, orientation=1, software='camera'):
         add_exif(path, exif_saying(orientation))
 
 
+def write_pages(path, pages, description=''):
+    """A TIFF file of several pages."""
+    specs = []
+    for page in pages:
+        specs.append(oiio.ImageSpec(page.shape[1], page.shape[0], page.shape[2], oiio.UINT8))
+        specs[-1]['ImageDescription'] = description
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), tuple(specs)), output.geterror()
+    for number, page in enumerate(pages):
+        assert number == 0 or output.open(str(path), specs[number], 'AppendSubimage'), output.geterror()
+        assert output.write_image(page), output.geterror()
+    assert output.close(), output.geterror()
+
+
 def flat(value, width=SIDE, height=SIDE, kind=np.uint8):
     return np.full((height, width, 3), value, kind)
 

@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 from slope import MANY, many_planes
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[1], 'pipelines/stack')))
-from dff_stack import Unusable, alignment, depths, engine, joining, memory, pictures, results, slabs, solve  # noqa: E402
+from dff_stack import Unusable, alignment, engine, joining, memory, ome, pictures, results, slabs, solve  # noqa: E402
 from dff_stack.encoding import Encoding  # noqa: E402
 from dff_stack.progress import Progress  # noqa: E402
 
@@ -241,7 +241,7 @@ class Writing(unittest.TestCase):
             output = oiio.ImageOutput.create(str(path))
             assert output.open(str(path), spec) and output.write_image(np.zeros((64, 64, 3), np.uint8)) and output.close()
             path.write_bytes(path.read_bytes().replace(b'Mxller', b'M\xfcller'))
-            picture, = depths.place_pages(pictures.pages_of(path))[0]
+            picture, = ome.place_pages(pictures.pages_of(path), print)[0]
             self.assertFalse(picture.is_result)
             for ending in ('jpg', 'tif', 'png', 'exr'):
                 with results.together() as files:

@@ -14,24 +14,10 @@ import numpy as np
 import OpenImageIO as oiio
 
 from gathering import Sweeps
-from sweeps import CMYK, CMYK_COLOURS, SIDE, chunk, exif_saying, exif_taken_at, flat, texture, write
+from sweeps import CMYK, CMYK_COLOURS, SIDE, chunk, exif_saying, exif_taken_at, flat, texture, write, write_pages
 
-from dff_stack import Unusable, ahead, depths, encoding, exif, sweep
+from dff_stack import Unusable, ahead, encoding, sweep
 from dff_stack.progress import Progress
-
-
-def write_pages(path, pages, description=''):
-    """A TIFF file of several pages."""
-    specs = []
-    for page in pages:
-        specs.append(oiio.ImageSpec(page.shape[1], page.shape[0], page.shape[2], oiio.UINT8))
-        specs[-1]['ImageDescription'] = description
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), tuple(specs)), output.geterror()
-    for number, page in enumerate(pages):
-        assert number == 0 or output.open(str(path), specs[number], 'AppendSubimage'), output.geterror()
-        assert output.write_image(page), output.geterror()
-    assert output.close(), output.geterror()
 
 
 def turned(pixels, orientation):
@@ -231,77 +217,6 @@ def write_dng(path, width, height):
             directory += struct.pack('<HHI', tag, kind, count) + data.ljust(4, b'\0')
     head = b'II*\0' + struct.pack('<I', 8) + struct.pack('<H', len(entries)) + directory + struct.pack('<I', 0) + extra
     path.write_bytes(head.ljust(2048, b'\0') + pixels.tobytes())
-
-
-def write_bare_tiff(path, order, is_big, text):
-    """A TIFF or BigTIFF file of nothing but a description."""
-    data = text.encode() + b'\0'
-    if is_big:
-        head = {'<': b'II', '>': b'MM'}[order] + struct.pack(order + 'HHHQ', 43, 8, 0, 16)
-        table = struct.pack(order + 'QHHQQQ', 1, 270, 2, len(data), 16 + 36, 0)
-    else:
-        head = {'<': b'II', '>': b'MM'}[order] + struct.pack(order + 'HI', 42, 8)
-        table = struct.pack(order + 'HHHIII', 1, 270, 2, len(data), 8 + 18, 0)
-    path.write_bytes(head + table + data)
-
-
-OME = '''<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0">
-<Pixels ID="Pixels:0" DimensionOrder="XYZCT" Type="uint8" SizeX="96" SizeY="96" SizeZ="3" SizeC="{channels}" SizeT="1"
-PhysicalSizeX="0.5" PhysicalSizeY="0.5" PhysicalSizeZ="2" PhysicalSizeZUnit="µm">{planes}</Pixels></Image></OME>'''
-
-
-class Ome(Sweeps):
-    def write(self, planes='', channels=1):
-        write_pages(self.photos / 'a.ome.tif', [flat(50 * number) for number in range(3)], OME.format(planes=planes, channels=channels))
-
-    def test_the_step_and_the_size_of_a_pixel_are_taken(self):
-        self.write()
-        found, pixel_um = sweep.gather([self.photos], 'name', False, self.said.append)
-        self.assertEqual([picture.position_um for picture in found], [0, 2, 4])
-        self.assertEqual(pixel_um, 0.5)
-        depth = np.array([[0, 0.5, np.nan, 2]], np.float32)
-        heights, unit, extent = depths.heights(depth, found)
-        np.testing.assert_allclose(heights, [[0, 1, np.nan, 4]])
-        self.assertEqual((unit, extent), ('micrometres', (0, 4)))
-
-    def test_positions_of_planes_go_before_the_step(self):
-        self.write(''.join(f'<Plane TheZ="{z}" TheC="0" TheT="0" PositionZ="{place}" PositionZUnit="mm"/>'
-                           for z, place in enumerate((1, 1.5, 1.6))))
-        self.assertEqual([picture.position_um for picture in self.gather()], [1000, 1500, 1600])
-
-    def test_a_long_description_is_read_to_its_end(self):
-        planes = ''.join(f'<Plane TheZ="{z}" TheC="0" TheT="0" PositionZ="{3 * z}"/>' for z in range(3))
-        self.write(f'<TiffData {"x" * 70000}="1"/>' + planes)
-        self.assertEqual([picture.position_um for picture in self.gather()], [0, 3, 6])
-        for order in '<>':
-            for is_big in (False, True):
-                write_bare_tiff(self.photos / 'a.ome.tif', order, is_big, OME.format(planes=f'<!--{"y" * 70000}-->' + planes, channels=1))
-                self.assertTrue(exif.description_of(self.photos / 'a.ome.tif').endswith('</OME>'), (order, is_big))
-
-    def test_what_a_damaged_file_promises_is_not_believed(self):
-        path = self.photos / 'a.tif'
-        for order in '<>':
-            for is_big in (False, True):
-                write_bare_tiff(path, order, is_big, 'a description')
-                whole = path.read_bytes()
-                for size in range(1, len(whole)):
-                    path.write_bytes(whole[:size])
-                    self.assertTrue('a description'.startswith(exif.description_of(path)), (order, is_big, size))
-                for at in range(4, len(whole)):
-                    path.write_bytes(whole[:at] + b'\xff' * min(8, len(whole) - at) + whole[at + 8:])
-                    self.assertLess(len(exif.description_of(path)), len(whole), (order, is_big, at))
-
-    def test_no_planes_at_all_are_refused(self):
-        write_pages(self.photos / 'a.tif', [flat(0), flat(50)], OME.replace('SizeZ="3"', 'SizeZ="0"').format(planes='', channels=1))
-        self.assert_refused('a.tif', 'OME')
-
-    def test_several_channels_are_refused(self):
-        self.write(channels=3)
-        self.assert_refused('a.ome.tif', '3 channels')
-
-    def test_a_description_that_is_none_is_refused(self):
-        write_pages(self.photos / 'a.tif', [flat(0), flat(50)], '<OME><broken')
-        self.assert_refused('a.tif', 'OME')
 
 
 class Refusing(Sweeps):

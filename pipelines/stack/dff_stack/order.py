@@ -49,8 +49,8 @@ def nearest_first(pictures, order, far_first, say):
 
 
 def contradictions(pictures):
-    """Names of pictures whose distance, or else whose time, does not fit the order of the others."""
-    for of in (lambda picture: picture.distance_m, lambda picture: picture.time or None):
+    """Names of pictures whose place on the axis, or else whose distance or time, does not fit the order of the others."""
+    for of in (lambda picture: picture.position_um, lambda picture: picture.distance_m, lambda picture: picture.time or None):
         values = [of(picture) for picture in pictures]
         if None in values:
             continue
@@ -117,6 +117,6 @@ def tell_of_doubts(pictures, lumas, sharpness, say):
     if seen:
         say(f'   {seen}')
     elif wrong:
-        say(f'   Out of order, it seems, by what EXIF says: {listed(wrong)}. See --order and --far-first')
+        say(f'   Out of order, it seems, by what the files say: {listed(wrong)}. See --order and --far-first')
     for number in copies(lumas):
         say(f'   {names[number + 1]} is almost the same picture as {names[number]}: a copy, or the focus stood still')

@@ -49,6 +49,8 @@ class Picture:
         if self.time:
             self.time += '.' + text_of(spec, 'Exif:SubsecTimeOriginal')
         self.distance_m = focus_distance(spec)
+        self.plane = page        # in the file, of the sweep
+        self.shot = None         # channel and time, where the file says so
         self.position_um = None  # along the axis, where the file says so
         self.number = None       # in the list of all, from 1
 

@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from dff_stack import Unusable, ahead, depths, encoding, listed, order, pictures, seriation
+from dff_stack import Unusable, ahead, encoding, listed, ome, order, pictures, seriation
 from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
@@ -25,10 +25,10 @@ def gather(paths, chosen_order, far_first, say):
         if pages[0].is_result and path not in named:
             say(f'   {path.name} is a result of dff-stack, and left out')
             continue
-        if len(pages) > 1:
-            pages, own = depths.place_pages(pages)
-            pixel_um = pixel_um or own
+        pages, own = ome.place_pages(pages, say)
+        pixel_um = pixel_um or own
         found += pages
+    ome.check_one_shot(found)
     if len(found) < 2:
         raise Unusable(f'{listed(paths)} holds {len(found)} picture{"s" if len(found) != 1 else ""} that can be used; '
                        f'a focus sweep has 2 or more')
