@@ -175,7 +175,9 @@ static gboolean src_event(GstAggregator *aggregator, GstEvent *event)
     return FALSE;
 }
 
-static GstFlowReturn update_src_caps(GstAggregator *aggregator, GstCaps *, GstCaps **caps)
+/* What nothing behind takes is told here: the pads' threads would learn it by their next buffer, and the last
+ * pictures of a stream have none after them. */
+static GstFlowReturn update_src_caps(GstAggregator *aggregator, GstCaps *downstream, GstCaps **caps)
 {
     const State &state = state_of(GST_DEPTH_FILE_ENC(aggregator));
     if (!state.colour)
@@ -185,7 +187,14 @@ static GstFlowReturn update_src_caps(GstAggregator *aggregator, GstCaps *, GstCa
     gst_caps_set_simple(*caps, "width", G_TYPE_INT, GST_VIDEO_INFO_WIDTH(&*state.colour), "height",
                         G_TYPE_INT, GST_VIDEO_INFO_HEIGHT(&*state.colour), "framerate", GST_TYPE_FRACTION,
                         GST_VIDEO_INFO_FPS_N(&*state.colour), GST_VIDEO_INFO_FPS_D(&*state.colour), nullptr);
-    return GST_FLOW_OK;
+    if (!downstream || gst_caps_can_intersect(*caps, downstream))
+        return GST_FLOW_OK;
+    GST_ELEMENT_ERROR(aggregator, CORE, NEGOTIATION,
+                      ("The files are of pictures of %s pixels, and what comes after does not take them: "
+                       "scale the pictures and their depth before this element",
+                       size_text(*state.colour).c_str()),
+                      ("%" GST_PTR_FORMAT " is none of %" GST_PTR_FORMAT, *caps, downstream));
+    return GST_FLOW_ERROR;
 }
 
 /* Without an answer, a tee before this element could not use a pool. */

@@ -100,10 +100,10 @@ private:
 /* An encoder that plays, and the files that it wrote. */
 class Encoder {
 public:
-    explicit Encoder(const std::string &description)
+    explicit Encoder(const std::string &description, const std::string &behind = "")
     {
-        pipeline_.reset(
-            gst_parse_launch((description + " name=e ! appsink name=out sync=false").c_str(), nullptr));
+        const std::string graph = description + " name=e ! " + behind + "appsink name=out sync=false";
+        pipeline_.reset(gst_parse_launch(graph.c_str(), nullptr));
         encoder_.reset(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "e"));
         sink_.reset(gst_bin_get_by_name(GST_BIN(pipeline_.get()), "out"));
     }
@@ -126,10 +126,10 @@ public:
         return sizes;
     }
 
-    std::string error() const
+    std::string error(GstClockTime patience = 0) const
     {
         g_autoptr(GstBus) bus = gst_element_get_bus(pipeline_.get());
-        g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+        g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(bus, patience, GST_MESSAGE_ERROR);
         g_autoptr(GError) error = nullptr;
         if (message)
             gst_message_parse_error(message, &error, nullptr);
@@ -212,6 +212,21 @@ TEST(FileInputs, a_gap_before_the_segment_is_no_fault)
         EXPECT_EQ(encoder.sizes().size(), 4U) << kind;
         EXPECT_EQ(encoder.error(), "") << kind;
         g_log_set_always_fatal(fatal);
+    }
+}
+
+/* A single picture has none after it by which the threads of the inputs would learn of it. */
+TEST(FileInputs, caps_that_nothing_behind_takes_are_an_error)
+{
+    for (const std::string &kind : encoders()) {
+        const std::string media = kind == "depthexrenc" ? "image/x-exr" : "application/x-ply";
+        Encoder encoder(kind, media + ",width=1 ! ");
+        Input colour(encoder.element(), "color", 0);
+        Input depth(encoder.element(), "depth", 0);
+        encoder.play();
+        colour.feed({0});
+        depth.feed({0});
+        EXPECT_NE(encoder.error(20 * GST_SECOND).find("16x16"), std::string::npos) << kind;
     }
 }
 
