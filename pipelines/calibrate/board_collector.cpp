@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "board_collector.h"
 
+#include "coverage.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -39,23 +41,38 @@ void BoardCollector::add(const Sweep &sweep)
         BoardView view = measure_board(board_, {sweep});
         if (pose_ && view.moved_from(*pose_) > rest_px)
             keep();
-        if (resting_.size() < enough_sweeps)
-            resting_.push_back(sweep);
+        if (!pose_ && is_known(view))
+            return tell_once("the board is where it was: move it");
+        resting_.push_back(sweep);
         if (!pose_)
             pose_ = std::move(view);
-        last_fault_.clear();
+        last_told_.clear();
+        if (resting_.size() == enough_sweeps)
+            keep();
     } catch (const NoBoard &fault) {
         keep();
-        if (last_fault_ != fault.what())
-            tell_(fault.what());
-        last_fault_ = fault.what();
+        tell_once(fault.what());
     }
+}
+
+bool BoardCollector::is_known(const BoardView &view) const
+{
+    return std::any_of(views_.begin(), views_.end(), [&](const BoardView &other) {
+        return view.moved_from(other) < another_pose * view.picture.width;
+    });
+}
+
+void BoardCollector::tell_once(const std::string &line)
+{
+    if (last_told_ != line)
+        tell_(line);
+    last_told_ = line;
 }
 
 void BoardCollector::end_source()
 {
     keep();
-    last_fault_.clear();
+    last_told_.clear();
 }
 
 void BoardCollector::keep()
@@ -66,14 +83,11 @@ void BoardCollector::keep()
     const BoardView first = *std::exchange(pose_, std::nullopt);
     try {
         BoardView view = sweeps.size() > 1 ? measure_board(board_, sweeps) : first;
-        const bool known = std::any_of(views_.begin(), views_.end(), [&](const BoardView &other) {
-            return view.moved_from(other) < another_pose * view.picture.width;
-        });
-        if (known)
-            return tell_("the board is where it was: move it");
         views_.push_back(std::move(view));
         pixels_.add(sweeps.front());
         tell_(what_is_seen(views_.back(), views_.size()));
+        if (const std::string missing = still_missing(views_); !missing.empty())
+            tell_(missing);
     } catch (const NoBoard &fault) {
         tell_(fault.what());
     }

@@ -26,13 +26,15 @@ public:
 
 private:
     void keep();
+    bool is_known(const BoardView &view) const;
+    void tell_once(const std::string &line);
 
     Board board_;
     Tell tell_;
     std::vector<BoardView> views_;
     std::vector<Sweep> resting_; /* of one pose */
     std::optional<BoardView> pose_;
-    std::string last_fault_;
+    std::string last_told_;
     PixelWatch pixels_;
 };
 

@@ -208,6 +208,7 @@ BoardView measure_board(const Board &board, const std::vector<Sweep> &sweeps)
                    .corners = {},
                    .focus = {},
                    .powers = sweeps.front().powers,
+                   .codes = sweeps.front().codes,
                    .window = window};
     for (const int step : {1, -1}) {
         std::vector<cv::Point2f> from = corners;

@@ -31,6 +31,7 @@ struct BoardView {
     std::vector<cv::Point2d> corners;            /* in the plane in which the board is sharpest */
     std::vector<double> focus;  /* the plane position in which each corner is sharpest; NAN */
     std::vector<double> powers; /* what the source says of the planes */
+    std::vector<int> codes;     /* what the lens was told for them, -1 where that is not known */
     int window = 0;             /* half the side of what was looked at around a corner */
     std::vector<SquareLight> squares{};
 

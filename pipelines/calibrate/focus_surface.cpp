@@ -40,6 +40,14 @@ double median_of(std::vector<double> values)
     return *middle;
 }
 
+/* How much a point says. A corner that is sharpest at an end of the sweep is seen blurred from one side
+ * alone, so that its place leans on how blur is taken to grow. */
+double weight_of(const FocusPoint &point, int planes)
+{
+    constexpr double end = 0.5, from_one_side = 0.1;
+    return point.plane < end || point.plane > planes - 1.0 - end ? from_one_side : 1.0;
+}
+
 std::vector<double> left_over(const cv::Mat1d &rows, const cv::Mat1d &right, const cv::Mat1d &solution)
 {
     const cv::Mat1d left = right - rows * solution;
@@ -74,10 +82,11 @@ FocusSurface fit_surface(const std::vector<FocusPoint> &points, unsigned planes,
     constexpr double straight =
         0.1; /* of a step: how far a plane may lie off the line through its neighbours */
     const int count = static_cast<int>(planes);
-    cv::Mat1d rows, right;
+    cv::Mat1d rows, right, says;
     for (const FocusPoint &point : points) {
         rows.push_back(row_of(point, count));
         right.push_back(point.vergence);
+        says.push_back(weight_of(point, count));
     }
     const auto [least, most] = std::minmax_element(
         points.begin(), points.end(), [](const auto &a, const auto &b) { return a.plane < b.plane; });
@@ -89,7 +98,7 @@ FocusSurface fit_surface(const std::vector<FocusPoint> &points, unsigned planes,
     const double share =
         std::min(1.0, independent * static_cast<double>(boards) / static_cast<double>(points.size()));
 
-    cv::Mat1d weights = cv::Mat1d::ones(rows.rows, 1), solution, covariance;
+    cv::Mat1d weights = says.clone(), solution, covariance;
     for (int round = 0; round < rounds; round++) {
         const cv::Mat1d weighted = share * rows.mul(cv::repeat(weights, 1, rows.cols));
         cv::Mat1d normal = weighted.t() * rows;
@@ -107,7 +116,7 @@ FocusSurface fit_surface(const std::vector<FocusPoint> &points, unsigned planes,
         deviation = std::max(robust_deviation(left), 1e-6 * step);
         for (int k = 0; k < rows.rows; k++) { /* Huber */
             const double size = std::abs(left[static_cast<std::size_t>(k)]) / (1.5 * deviation);
-            weights(k) = size <= 1.0 ? 1.0 : 1.0 / size;
+            weights(k) = says(k) * (size <= 1.0 ? 1.0 : 1.0 / size);
         }
         covariance = inverse * (deviation * deviation);
     }

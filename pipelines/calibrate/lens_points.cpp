@@ -2,15 +2,16 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "lens_points.h"
 
+#include "lens_profile_file.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <iomanip>
-#include <opencv2/core/persistence.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace dff {
 
@@ -31,6 +32,9 @@ LensPoint point_of(const std::string &text, const std::string &whole)
     const std::size_t sign = text.find('=');
     const LensPoint point{number_of(text.substr(0, sign), whole),
                           number_of(sign == std::string::npos ? "" : text.substr(sign + 1), whole)};
+    constexpr double most_position = 1e9; /* that a lens profile may have */
+    if (std::abs(point.position) > most_position)
+        throw std::invalid_argument("A position of --points must be within -1e9 and 1e9");
     if (!(point.metres >= 0.001))
         throw std::invalid_argument("A distance of --points must be a millimetre or more, in metres");
     return point;
@@ -101,13 +105,7 @@ void LensPoints::write(const std::string &path, const std::string &lens) const
         vergences.push_back(point.vergence());
         positions.push_back(point.position);
     }
-    cv::FileStorage storage(".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    storage << "lens" << lens << "vergence" << vergences << "position" << positions;
-    std::ofstream file(path, std::ios::binary);
-    file << storage.releaseAndGetString();
-    file.close();
-    if (!file)
-        throw std::runtime_error("The lens profile " + path + " cannot be written");
+    write_focus_points(path, lens, std::move(vergences), std::move(positions));
 }
 
 } // namespace dff

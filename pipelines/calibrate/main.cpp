@@ -4,6 +4,7 @@
 #include "calibration_file.h"
 #include "calibration_plots.h"
 #include "lens_points.h"
+#include "lens_profile_file.h"
 #include "options.h"
 
 #include <cmath>
@@ -124,6 +125,11 @@ int run(const dff::Options &options)
     report(found);
     dff::write_calibration(options.output, found, options.board);
     std::printf("%s is for every calibration property.\n", options.output.c_str());
+    if (!options.profile.empty()) {
+        dff::write_lens_profile(options.profile, options.lens, found.focus.vergences, found.codes,
+                                options.like);
+        std::printf("%s is for lens-profile.\n", options.profile.c_str());
+    }
     if (!options.plots.empty())
         dff::write_plots(options.plots, found);
     return 0;

@@ -11,13 +11,13 @@ namespace {
 
 struct Values {
     gchar *board = nullptr, *sheet = nullptr, *output = nullptr, *check = nullptr, *points = nullptr,
-          *lens = nullptr, *plots = nullptr;
+          *lens = nullptr, *profile = nullptr, *like = nullptr, *plots = nullptr;
     gchar **recordings = nullptr, **sources = nullptr;
     gint boards = 0;
 
     ~Values()
     {
-        for (gchar *text : {board, sheet, output, check, points, lens, plots})
+        for (gchar *text : {board, sheet, output, check, points, lens, profile, like, plots})
             g_free(text);
         g_strfreev(recordings);
         g_strfreev(sources);
@@ -56,10 +56,15 @@ void take(const Values &values, Options &options)
         options.board = *board;
     }
     options.sheet = values.sheet ? values.sheet : options.sheet;
-    options.output = values.output ? values.output : options.output;
     options.check = values.check ? values.check : options.check;
     options.points = values.points ? values.points : options.points;
+    if (!options.points.empty()) /* no lens profile takes the place of a calibration that nobody named */
+        options.output = "lens.yml";
+    options.output = values.output ? values.output : options.output;
     options.lens = values.lens ? values.lens : options.lens;
+    options.profile = values.profile ? values.profile : options.profile;
+    if (values.like)
+        options.like = values.like;
     options.plots = values.plots ? values.plots : options.plots;
     if (values.boards < 0 || values.boards > 1000)
         throw std::invalid_argument("--boards is 1 to 1000");
@@ -67,6 +72,11 @@ void take(const Values &values, Options &options)
     if (options.sources.empty() && options.sheet.empty() && options.points.empty())
         throw std::invalid_argument(
             "Nothing to look at: give --source or --recording, --points or --sheet; --help tells more");
+    if (!options.profile.empty() && (options.sources.empty() || !options.check.empty()))
+        throw std::invalid_argument(
+            "--profile is of boards that are seen: give --source or --recording with it, and not --check");
+    if (options.like && options.profile.empty())
+        throw std::invalid_argument("--like is for --profile, the file to write");
     if (!options.plots.empty() && (options.sources.empty() || !options.check.empty()))
         throw std::invalid_argument(
             "--plots draws what is found: give --source or --recording with it, and not --check");
@@ -86,8 +96,8 @@ Options parse_options(int argc, char **argv)
          "A recording of planes by dffmetapay ! gdppay; may be given many times", "FILE"},
         {"source", 0, 0, G_OPTION_ARG_STRING_ARRAY, &values.sources,
          "A pipeline that ends in labelled planes; may be given many times", "PIPELINE"},
-        {"output", 'o', 0, G_OPTION_ARG_FILENAME, &values.output, "The file to write (calibration.yml)",
-         "FILE"},
+        {"output", 'o', 0, G_OPTION_ARG_FILENAME, &values.output,
+         "The file to write (calibration.yml, with --points lens.yml)", "FILE"},
         {"check", 0, 0, G_OPTION_ARG_FILENAME, &values.check,
          "Write nothing: measure whether this file still fits", "FILE"},
         {"plots", 0, 0, G_OPTION_ARG_FILENAME, &values.plots,
@@ -96,7 +106,11 @@ Options parse_options(int argc, char **argv)
          "Look at nothing: write a lens profile of distances that a tape measured, as "
          "120=2.0,200=0.9,310=0.5",
          "POSITION=METRES,..."},
-        {"lens", 0, 0, G_OPTION_ARG_STRING, &values.lens, "The name of that lens", "NAME"},
+        {"profile", 0, 0, G_OPTION_ARG_FILENAME, &values.profile,
+         "Write a lens profile too, of what the lens was told for the planes", "FILE"},
+        {"like", 0, 0, G_OPTION_ARG_FILENAME, &values.like,
+         "Profile of the liquid lens that was swept, whose driver and times --profile takes over", "FILE"},
+        {"lens", 0, 0, G_OPTION_ARG_STRING, &values.lens, "The name of the lens in its profile", "NAME"},
         {"boards", 0, 0, G_OPTION_ARG_INT, &values.boards, "Poses of the board after which to end (12)", "N"},
         {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
     g_autoptr(GOptionContext) context = g_option_context_new(nullptr);

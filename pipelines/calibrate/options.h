@@ -4,6 +4,7 @@
 
 #include "board.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct Options {
     std::vector<std::string> sources; /* descriptions for gst-launch-1.0 */
     std::string points;               /* of a lens, as LensPoints has them */
     std::string lens = "lens";
+    std::string profile;             /* a lens profile to write beside the calibration */
+    std::optional<std::string> like; /* the one that it takes after */
     std::string output = "calibration.yml";
     std::string check;
     std::string plots;

@@ -2,13 +2,13 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "rig_calibration.h"
 
+#include "coverage.h"
 #include "focus_curves.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <opencv2/calib3d.hpp>
-#include <set>
 #include <sstream>
 
 namespace dff {
@@ -185,17 +185,14 @@ void require_sense(const RigCalibration &result)
             " planes are left): the board and the light must rest during a sweep, and each sweep be alike");
 }
 
-/* Of nine parts of the picture, how many have a corner of a board. */
-std::size_t parts_covered(const RigCalibration &result)
+/* How many parts of the picture have a corner of a board. */
+int parts_covered(const RigCalibration &result)
 {
+    const cv::Size picture(static_cast<int>(result.camera.width), static_cast<int>(result.camera.height));
     std::set<int> parts;
     for (const auto &view : result.warps.corners)
-        for (const cv::Point2d &corner : view) {
-            const int column = static_cast<int>(3 * corner.x / result.camera.width);
-            const int row = static_cast<int>(3 * corner.y / result.camera.height);
-            parts.insert(3 * std::clamp(row, 0, 2) + std::clamp(column, 0, 2));
-        }
-    return parts.size();
+        parts.merge(parts_with(view, picture));
+    return static_cast<int>(parts.size());
 }
 
 void find_weakness(RigCalibration &result, const std::vector<FocusPoint> &points)
@@ -205,9 +202,9 @@ void find_weakness(RigCalibration &result, const std::vector<FocusPoint> &points
     if (result.focal_deviation > 0.003)
         result.weak.push_back("The focal length is known within " + number(100 * result.focal_deviation, 2) +
                               " %: more boards that are tilted would help.");
-    if (const std::size_t parts = parts_covered(result); parts < 9)
+    if (const int parts = parts_covered(result); parts < parts_of_picture)
         result.weak.push_back(
-            std::to_string(9 - parts) +
+            std::to_string(parts_of_picture - parts) +
             " of nine parts of the picture saw no board; distortion and field are guessed there: "
             "show it in the corners.");
     if (result.focus.field_deviation > unsure * step)
@@ -215,9 +212,8 @@ void find_weakness(RigCalibration &result, const std::vector<FocusPoint> &points
                               number(result.focus.field_deviation / step, 2) +
                               " planes: show the board in the corners at several distances.");
     for (std::size_t z = 0; z < result.focus.vergences.size(); z++) {
-        const bool seen = std::any_of(points.begin(), points.end(), [z](const FocusPoint &point) {
-            return std::abs(point.plane - static_cast<double>(z)) < 0.35;
-        });
+        const bool seen = std::any_of(points.begin(), points.end(),
+                                      [z](const FocusPoint &point) { return is_sharp_in(point.plane, z); });
         if (!seen || result.focus.deviations[z] > unsure * step)
             result.weak.push_back(
                 "Plane " + std::to_string(z) + (seen ? " is weakly determined" : " saw no board sharp") +
@@ -239,6 +235,16 @@ void compare_powers(const std::vector<BoardView> &views, RigCalibration &result)
                               " dioptres, the boards " + number(result.focus.vergences.front(), 2) + " to " +
                               number(result.focus.vergences.back(), 2) +
                               ": measure the squares (--board) once more before you trust the boards.");
+}
+
+/* What the lens was told, if all views say the same. */
+std::vector<int> codes_of(const std::vector<BoardView> &views)
+{
+    const std::vector<int> &codes = views.front().codes;
+    const bool is_known = std::all_of(codes.begin(), codes.end(), [](int code) { return code >= 0; });
+    const bool is_one =
+        std::all_of(views.begin(), views.end(), [&](const BoardView &view) { return view.codes == codes; });
+    return is_known && is_one ? codes : std::vector<int>();
 }
 
 void find_light(const Board &board, const std::vector<BoardView> &views, RigCalibration &result)
@@ -317,6 +323,7 @@ RigCalibration calibrate(const Board &board, std::vector<BoardView> views)
     find_light(board, views, result);
     find_weakness(result, points);
     compare_powers(views, result);
+    result.codes = codes_of(views);
     return result;
 }
 

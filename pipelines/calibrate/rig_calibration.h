@@ -27,6 +27,7 @@ struct RigCalibration {
     RigLight light;
     RigNoise noise;
     std::vector<cv::Point> bad_pixels;
+    std::vector<int> codes; /* that the lens was told for the planes; empty if that is not known */
     std::size_t boards = 0;
     std::vector<FocusPoint> points; /* corners, where each was sharp */
     std::vector<std::string> weak;  /* what is weakly determined, and what would help, in words */

@@ -78,13 +78,15 @@ void SweepReader::take(GstSample *sample)
     if (focus.plane >= focus.planes)
         throw std::runtime_error("A frame is said to be a plane that there is not");
     if (focus.sweep != number_ || sweep_.planes.size() != focus.planes) {
-        sweep_ = {std::vector<cv::Mat1b>(focus.planes), std::vector<double>(focus.planes, NAN)};
+        sweep_ = {std::vector<cv::Mat1b>(focus.planes), std::vector<double>(focus.planes, NAN),
+                  std::vector<int>(focus.planes, -1)};
         seen_ = 0;
     }
     number_ = focus.sweep;
     seen_ += sweep_.planes[focus.plane].empty() ? 1 : 0;
     sweep_.planes[focus.plane] = copy_of(sample);
     sweep_.powers[focus.plane] = focus.power;
+    sweep_.codes[focus.plane] = focus.code;
 }
 
 std::optional<Sweep> SweepReader::next()

@@ -16,6 +16,7 @@ namespace dff {
 struct Sweep {
     std::vector<cv::Mat1b> planes;
     std::vector<double> powers; /* as the source says them, NAN where it does not */
+    std::vector<int> codes;     /* what the lens was told, -1 where that is not known */
 };
 
 /* Whole sweeps from a pipeline whose frames say which plane they are. */

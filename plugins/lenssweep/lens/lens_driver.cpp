@@ -65,6 +65,15 @@ std::uint16_t LensDriver::code(double drive) const
     return static_cast<std::uint16_t>(std::lround((drive - lowest) / (highest - lowest) * highest_code));
 }
 
+double LensDriver::drive(int code) const
+{
+    const int highest_code = (1 << code_bits) - 1;
+    if (code < 0 || code > highest_code)
+        throw std::invalid_argument(std::to_string(code) + " is no code of the " + name +
+                                    ", which has 0 to " + std::to_string(highest_code));
+    return lowest + (highest - lowest) * code / highest_code;
+}
+
 std::uint16_t LensDriver::table_code(double drive) const
 {
     return static_cast<std::uint16_t>(code(drive) << (table_code_bits - code_bits));

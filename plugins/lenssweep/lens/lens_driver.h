@@ -21,6 +21,10 @@ struct LensDriver {
     /* The chip's code. Throws std::invalid_argument outside of lowest to highest. */
     std::uint16_t code(double drive) const;
 
+    /* What the chip does with a code, as a lens profile has it. Throws std::invalid_argument for none of its
+     * codes. */
+    double drive(int code) const;
+
     /* The same in a row of the sequencer's table, whose codes have 10 bits: those of fewer are the high ones.
      */
     std::uint16_t table_code(double drive) const;

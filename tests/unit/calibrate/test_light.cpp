@@ -62,7 +62,8 @@ std::vector<BoardSquares> views_of(const std::vector<std::vector<SquareLight>> &
 
 Sweep sweep_of(const cv::Mat1b &plane, std::size_t count = planes)
 {
-    return {std::vector<cv::Mat1b>(count, plane), std::vector<double>(count, NAN)};
+    return {std::vector<cv::Mat1b>(count, plane), std::vector<double>(count, NAN),
+            std::vector<int>(count, -1)};
 }
 
 const std::vector<double> in_the_middle(54, 1.5);

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "calibration_file.h"
+#include "coverage.h"
 #include "focus_curves.h"
 #include "lens_points.h"
+#include "lens_profile_file.h"
 #include "optics/focus_calibration.h"
 #include "optics/focus_points.h"
+#include "optics/lens_profile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +73,7 @@ BoardView view_of(const Pose &pose, const Lens &lens = {})
                    .corners = pixels,
                    .focus = std::vector<double>(pixels.size()),
                    .powers = std::vector<double>(planes, NAN),
+                   .codes = std::vector<int>(planes, -1),
                    .window = window};
     for (std::size_t k = 0; k < pixels.size(); k++) {
         const cv::Vec3d at = rotation * cv::Vec3d(sheet[k].x, sheet[k].y, 0.0) + pose.shift;
@@ -276,6 +280,93 @@ TEST(LensPoints, a_profile_of_a_tape_is_one_that_lenses_take)
         << points.worth();
 }
 
+namespace {
+
+/* Six planes that a lens was told by codes, the nearest first. */
+const std::vector<double> vergences{3.4, 2.86, 2.32, 1.78, 1.24, 0.7};
+
+std::string refusal_of_profile(const std::vector<int> &codes, const std::optional<std::string> &like = {})
+{
+    try {
+        write_lens_profile("/nowhere/lens.yml", "lens", vergences, codes, like);
+    } catch (const std::exception &error) {
+        return error.what();
+    }
+    return "";
+}
+
+} // namespace
+
+TEST(LensProfileFile, a_lens_is_where_its_codes_were)
+{
+    const TemporaryFile file;
+    write_lens_profile(file.path, "webcam", vergences, {250, 210, 170, 130, 90, 50}, {});
+    const FocusPoints profile = FocusPoints::load(file.path);
+    EXPECT_EQ(profile.lens(), "webcam");
+    EXPECT_DOUBLE_EQ(profile.position(3.4), 250.0);
+    EXPECT_DOUBLE_EQ(profile.position(0.7), 50.0);
+    EXPECT_NEAR(profile.position(2.05), 150.0, 1e-9);
+}
+
+TEST(LensProfileFile, a_liquid_lens_takes_after_the_profile_that_it_was_swept_with)
+{
+    const TemporaryFile nominal;
+    std::ofstream(nominal.path)
+        << "%YAML:1.0\n---\nlens: \"nominal\"\nnominal: 1\npower_at_infinity: 0.\n"
+           "lens_power: [ -5., 15. ]\nvolts: [ 39., 58. ]\nsettle_us: 12345\noverdrive: 0.25\n";
+    const std::string file = nominal.path + ".found";
+    write_lens_profile(file, "mine", vergences, {1023, 900, 700, 500, 300, 0}, nominal.path);
+    const LensProfile profile = LensProfile::load(file);
+    unlink(file.c_str());
+    EXPECT_FALSE(profile.nominal());
+    EXPECT_EQ(profile.settle().count(), 12345);
+    EXPECT_DOUBLE_EQ(profile.overdrive(), 0.25);
+    EXPECT_DOUBLE_EQ(profile.nearest(), 3.4);
+    EXPECT_NEAR(profile.drive(0.7), 24.4, 1e-9); /* code 0 of a MAX14574, and code 1023 */
+    EXPECT_NEAR(profile.drive(3.4), 69.9, 1e-9);
+    EXPECT_NE(refusal_of_profile({1024, 900, 700, 500, 300, 0}, nominal.path).find("no code of the MAX14574"),
+              std::string::npos);
+    EXPECT_NE(refusal_of_profile({0, 300, 500, 700, 900, 1023}, nominal.path).find("do not rise"),
+              std::string::npos);
+}
+
+TEST(LensProfileFile, codes_that_make_no_profile_are_refused)
+{
+    EXPECT_NE(refusal_of_profile({}).find("do not say what the lens was told"), std::string::npos);
+    EXPECT_NE(refusal_of_profile({5, 5, 4, 3, 2, 1}).find("told the same"), std::string::npos);
+}
+
+TEST(LensProfileFile, codes_are_those_that_all_sweeps_say)
+{
+    std::vector<BoardView> views = views_of(good_poses());
+    EXPECT_TRUE(calibrate(board, views).codes.empty());
+    for (BoardView &view : views)
+        view.codes = {250, 210, 170, 130, 90, 50};
+    EXPECT_EQ(calibrate(board, views).codes, views.front().codes);
+    views.back().codes[2] = 171;
+    EXPECT_TRUE(calibrate(board, views).codes.empty());
+}
+
+TEST(Coverage, what_boards_have_not_shown_is_named)
+{
+    const std::vector<Pose> all = good_poses();
+    const std::string missing = still_missing(views_of({all.begin(), all.begin() + 4}));
+    EXPECT_NE(missing.find("sharp in plane 3, 4, 5"), std::string::npos) << missing;
+    BoardView everywhere = view_of(all.front());
+    for (cv::Point2d &corner : everywhere.corners)
+        corner = {20.0, 470.0};
+    const std::string parts = still_missing({everywhere});
+    EXPECT_NE(
+        parts.find("in the picture's upper left, top, upper right, left, middle, right, bottom, lower right"),
+        std::string::npos)
+        << parts;
+    for (std::size_t k = 0; k < everywhere.corners.size(); k++) {
+        everywhere.corners[k] = {static_cast<double>(k % 9) * 79.0, static_cast<double>(k / 9) * 95.0};
+        everywhere.focus[k] = static_cast<double>(k % planes);
+    }
+    EXPECT_EQ(still_missing({everywhere}), "");
+}
+
 TEST(LensPoints, two_points_do_not_know_their_error)
 {
     const LensPoints points = LensPoints::parse("5=1,2=0.25");
@@ -286,6 +377,7 @@ TEST(LensPoints, two_points_do_not_know_their_error)
 TEST(LensPoints, what_is_no_points_is_refused_with_what_to_do)
 {
     for (const char *text :
-         {"", "1=2", "1=2,3", "1=2,x=3", "1=2,3=0", "1=2,3=-1", "1=2,3=2", "1=2,3=1,2=0.5", "1=2,,3=1"})
+         {"", "1=2", "1=2,3", "1=2,x=3", "1=2,3=0", "1=2,3=-1", "1=2,3=2", "1=2,3=1,2=0.5", "1=2,,3=1",
+          "1=2,1=1", "1=2,3=1e-9", "1=2,1e12=1", "1=inf,2=1", "nan=1,2=2", "1:2,3:1", "-1=-2,3=1"})
         EXPECT_THROW(LensPoints::parse(text), std::invalid_argument) << text;
 }

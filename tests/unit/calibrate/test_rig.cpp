@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 /* The simulated rig, measured by pictures alone. */
 #include "board_collector.h"
+#include "board_rig.h"
 #include "calibration_file.h"
 #include "focalstack/alignment_calibration.h"
 
@@ -14,8 +15,6 @@ using namespace dff;
 
 namespace {
 
-const Board board{10, 7, 20.0};
-
 /* Tells what BoardCollector tells. */
 struct Seen {
     std::vector<BoardView> views;
@@ -25,20 +24,8 @@ struct Seen {
 
 class Rig : public testing::Test {
 protected:
-    static void SetUpTestSuite()
-    {
-        camera = testing::TempDir() + "rig" + std::to_string(getpid()) + ".yml";
-        std::ofstream(camera)
-            << "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\n"
-               "camera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
-               "   data: [ 800., 0., 319.5, 0., 800., 239.5, 0., 0., 1. ]\n"
-               "distortion_coefficients: !!opencv-matrix\n   rows: 5\n   cols: 1\n   dt: d\n"
-               "   data: [ -0.05, 0.01, 0., 0., 0. ]\n";
-    }
-    static void TearDownTestSuite() { unlink(camera.c_str()); }
-
     static Seen
-    look(const std::vector<std::string> &poses, const Board &asked = board,
+    look(const std::vector<std::string> &poses, const Board &asked = rig.board(),
          const std::string &more = "breathing=0.03 field-curvature=0.5 vignetting=0.05 noise=moderate")
     {
         Seen seen;
@@ -47,7 +34,7 @@ protected:
             SweepReader reader(
                 "lenssweeptestsrc num-buffers=6 planes=6 near=3.4 far=0.7 scene=board board=10x7x20 "
                 "calibration=" +
-                camera + " pose=" + pose + " " + more);
+                rig.camera() + " pose=" + pose + " " + more);
             while (const auto sweep = reader.next())
                 collector.add(*sweep);
             collector.end_source();
@@ -57,37 +44,17 @@ protected:
         return seen;
     }
 
-    static inline std::string camera;
+    static inline const BoardRig rig;
 };
-
-const std::vector<std::string> good_poses{
-    "0,-0.01,0.33,20,8,3",       "0.03,0.02,0.33,-25,5,0",    "-0.03,-0.02,0.36,5,25,-5",
-    "-0.05,0.04,0.40,10,-28,10", "0.06,-0.03,0.45,-20,-15,0", "0.08,0.07,0.52,25,20,-8",
-    "-0.11,-0.07,0.60,-22,18,5", "0.14,-0.10,0.72,15,-25,0",  "-0.18,0.12,0.86,-28,-10,12",
-    "0.22,0.15,1.05,24,-12,-4",  "-0.28,-0.20,1.28,-20,25,0", "0.10,0.05,1.45,28,15,6"};
 
 } // namespace
 
 TEST_F(Rig, twelve_boards_tell_what_the_lens_is)
 {
-    const Seen seen = look(good_poses);
+    const Seen seen = look(rig.poses());
     ASSERT_EQ(seen.views.size(), 12u) << seen.told;
-    const RigCalibration found = calibrate(board, seen.views);
-    const double step = 0.54;
-    EXPECT_NEAR(found.camera.fx, 800.0, 2.4);
-    EXPECT_NEAR(found.camera.fy, 800.0, 2.4);
-    for (int z = 0; z < 6; z++) {
-        for (const double radius : {0.0, 0.5, 1.0}) {
-            const double truth = 3.4 - step * (z + 0.5 * radius * radius);
-            EXPECT_NEAR(found.focus.vergence_at(z, {0.8 * radius, 0.6 * radius}), truth, 0.1 * step)
-                << z << radius;
-        }
-        const double magnification = 1.0 + 0.03 * (z - 3) / 5.0;
-        for (const cv::Point2d corner : {cv::Point2d(-319.5, -239.5), {319.5, 239.5}, {0.0, 0.0}})
-            EXPECT_LT(cv::norm(found.warps.planes[static_cast<std::size_t>(z)].apply(corner) -
-                               magnification * corner),
-                      0.1);
-    }
+    const RigCalibration found = calibrate(rig.board(), seen.views);
+    rig.expect_found(found);
 
     /* The camera draws a disk of 2 px by the share of each pixel, which is as wide as one of 2.54 px. */
     EXPECT_NEAR(found.blur_step, 2.54, 0.15);
@@ -104,29 +71,47 @@ TEST_F(Rig, twelve_boards_tell_what_the_lens_is)
     EXPECT_TRUE(seen.bad_pixels.empty());
 
     const std::string file = testing::TempDir() + "found" + std::to_string(getpid()) + ".yml";
-    write_calibration(file, found, board);
+    write_calibration(file, found, rig.board());
     const auto warps = AlignmentCalibration::load(file).alignments({640, 480}, 6);
     EXPECT_NEAR(warps[0].warp.scale(), 1.0 - 0.018, 3e-4);
     unlink(file.c_str());
 
-    const std::vector<std::string> few(good_poses.begin() + 3, good_poses.begin() + 6);
-    EXPECT_TRUE(check(found, board, look(few).views).faults.empty());
-    EXPECT_FALSE(check(found, board, look(few, board, "breathing=0.02 noise=moderate").views).faults.empty());
+    const std::vector<std::string> few(rig.poses().begin() + 3, rig.poses().begin() + 6);
+    EXPECT_TRUE(check(found, rig.board(), look(few).views).faults.empty());
+    EXPECT_FALSE(check(found, rig.board(), look(few, rig.board(), "breathing=0.02 noise=moderate").views)
+                     .faults.empty());
 }
 
 TEST_F(Rig, a_board_that_cannot_be_used_is_told)
 {
-    const std::string cut = look({"0.2,0,0.5,20,0,0"}, board, "noise=moderate").told;
+    const std::string cut = look({"0.2,0,0.5,20,0,0"}, rig.board(), "noise=moderate").told;
     EXPECT_NE(cut.find("cut off"), std::string::npos) << cut;
     for (const Board &wrong : {Board{8, 6, 20.0}, Board{9, 7, 20.0}, Board{12, 9, 20.0}}) {
         const Seen seen = look({"0,0,0.5,20,0,0"}, wrong, "noise=moderate");
         EXPECT_TRUE(seen.views.empty());
         EXPECT_NE(seen.told.find("another number of squares"), std::string::npos) << seen.told;
     }
-    const std::string blurred = look({"0,0,0.33,0,0,0"}, board, "near=0.9 far=0.7 blur-step=4").told;
+    const std::string blurred = look({"0,0,0.33,0,0,0"}, rig.board(), "near=0.9 far=0.7 blur-step=4").told;
     EXPECT_TRUE(blurred.find("blurred") != std::string::npos ||
                 blurred.find("range that the sweep") != std::string::npos)
         << blurred;
+}
+
+/* A camera that goes on for ever ends no pose. */
+TEST_F(Rig, a_board_at_rest_is_measured_while_it_is_seen)
+{
+    std::string told;
+    BoardCollector collector(rig.board(), [&](const std::string &line) { told += line + "\n"; });
+    SweepReader reader("lenssweeptestsrc num-buffers=60 planes=6 near=3.4 far=0.7 scene=board board=10x7x20 "
+                       "pose=0,0,0.5,20,-15,5");
+    while (const auto sweep = reader.next())
+        collector.add(*sweep);
+    EXPECT_EQ(collector.views().size(), 1u) << told;
+    EXPECT_NE(told.find("still to be shown: sharp in plane 0, 1"), std::string::npos) << told;
+    const std::string moved = "the board is where it was: move it\n";
+    EXPECT_EQ(told.find(moved), told.size() - moved.size()) << told;
+    collector.end_source();
+    EXPECT_EQ(collector.views().size(), 1u);
 }
 
 TEST_F(Rig, frames_that_say_no_plane_are_told)
