@@ -21,6 +21,12 @@ struct Values {
     gchar *scene = nullptr;
     gchar *image = nullptr;
     gchar *depth_map = nullptr;
+    gchar *board = nullptr;
+    gchar *pose = nullptr;
+    gchar *calibration = nullptr;
+    gdouble breathing = 0.0;
+    gdouble field_curvature = 0.0;
+    gdouble vignetting = 0.0;
     gchar *noise = nullptr;
     gchar *size = nullptr;
     gint planes = 6;
@@ -57,9 +63,19 @@ void parse_arguments(Values &v, int argc, char **argv)
 {
     const GOptionEntry entries[] = {
         {"scene", 0, 0, G_OPTION_ARG_STRING, &v.scene, "What stands before the camera [shapes]",
-         "shapes|slant|files"},
+         "shapes|slant|files|board"},
         {"image", 0, 0, G_OPTION_ARG_FILENAME, &v.image, "Sharp picture of --scene=files", "FILE"},
         {"depth-map", 0, 0, G_OPTION_ARG_FILENAME, &v.depth_map, "Disparity map of --scene=files", "FILE"},
+        {"board", 0, 0, G_OPTION_ARG_STRING, &v.board, "Squares and millimetres of --scene=board [10x7x25]",
+         "CxRxMM"},
+        {"pose", 0, 0, G_OPTION_ARG_STRING, &v.pose, "Where that board is, metres and degrees [0,0,0.5]",
+         "X,Y,Z,RX,RY,RZ"},
+        {"calibration", 0, 0, G_OPTION_ARG_FILENAME, &v.calibration, "Camera that sees that board", "FILE"},
+        {"breathing", 0, 0, G_OPTION_ARG_DOUBLE, &v.breathing,
+         "Magnification of the last plane less that of the first [0]", "SHARE"},
+        {"field-curvature", 0, 0, G_OPTION_ARG_DOUBLE, &v.field_curvature,
+         "Planes that the corners' focus lies farther away [0]", "PLANES"},
+        {"vignetting", 0, 0, G_OPTION_ARG_DOUBLE, &v.vignetting, "Light that the corners lose [0]", "SHARE"},
         {"noise", 0, 0, G_OPTION_ARG_STRING, &v.noise, "Of the sensor [none]",
          "none|mild|moderate|strong|GAIN,READ"},
         {"seed", 0, 0, G_OPTION_ARG_INT64, &v.seed, "Of the scene, the noise and the faults [0]", "N"},
@@ -154,7 +170,9 @@ GstLensSweepTestScene scene_kind(const std::string &name)
         return GST_LENS_SWEEP_TEST_SCENE_SLANT;
     if (name == "files")
         return GST_LENS_SWEEP_TEST_SCENE_FILES;
-    throw std::invalid_argument("the scene \"" + name + "\" is not known; use shapes, slant or files");
+    if (name == "board")
+        return GST_LENS_SWEEP_TEST_SCENE_BOARD;
+    throw std::invalid_argument("the scene \"" + name + "\" is not known; use shapes, slant, files or board");
 }
 
 bool is_register_lens(const std::string &name)
@@ -170,6 +188,12 @@ TestScene scene_of(const Values &v)
     scene.scene = scene_kind(text(v.scene, "shapes"));
     scene.image = text(v.image);
     scene.depth_map = text(v.depth_map);
+    scene.board = text(v.board, scene.board);
+    scene.pose = text(v.pose, scene.pose);
+    scene.calibration = text(v.calibration);
+    scene.breathing = v.breathing;
+    scene.field_curvature = v.field_curvature;
+    scene.vignetting = v.vignetting;
     scene.noise = text(v.noise, "none");
     scene.seed = static_cast<guint64>(v.seed);
     scene.check();
