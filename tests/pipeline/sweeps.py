@@ -58,12 +58,15 @@ def write(path, pixels, orientation=1, software='camera'):
         add_exif(path, exif_saying(orientation))
 
 
-def write_pages(path, pages, description=''):
-    """A TIFF file of several pages."""
+def write_pages(path, pages, description='', a_unit=0.0):
+    """A TIFF file of several pages, with so many pixels in a unit."""
     specs = []
     for page in pages:
         specs.append(oiio.ImageSpec(page.shape[1], page.shape[0], page.shape[2], oiio.UINT8))
         specs[-1]['ImageDescription'] = description
+        if a_unit:
+            specs[-1]['XResolution'] = specs[-1]['YResolution'] = a_unit
+            specs[-1]['ResolutionUnit'] = 'none'
     output = oiio.ImageOutput.create(str(path))
     assert output.open(str(path), tuple(specs)), output.geterror()
     for number, page in enumerate(pages):

@@ -28,7 +28,7 @@ RESULTS
   something fails or Ctrl-C is pressed, none is. TIFF, PNG have the bits of the pictures, JPEG 8, EXR half floats of linear
   light. EXIF of the first picture, its profile and what was done stand in the file. Pictures are turned upright.
   --depth   TIFF and EXR: numbers with a point, NaN where depth is not known. They are micrometres where the step between
-            pictures is known: from --step, or from an OME-TIFF; else plane numbers, 0 for the first picture of the order.
+            pictures is known: from --step, an OME-TIFF or ImageJ's TIFF; else plane numbers, 0 for the first picture of the order.
             PNG: 16 bits; the description in the file says what a pixel means, 0 is not known.
   --index   of each pixel the number of the picture in which it is sharp, 1 for the first of the order, 0 where not known. Those
             that are left out are counted too, as in the list at the start; plane numbers of --depth do not count them.

@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from dff_stack import Unusable, ahead, encoding, listed, ome, order, pictures, seriation
+from dff_stack import Unusable, ahead, encoding, imagej, listed, ome, order, pictures, seriation
 from dff_stack.bad_pixels import BadPixels, repair
 
 SMALL = 1000      # pixels of the longer side in which pictures are aligned, and up to twice that
@@ -25,8 +25,9 @@ def gather(paths, chosen_order, far_first, say):
         if pages[0].is_result and path not in named:
             say(f'   {path.name} is a result of dff-stack, and left out')
             continue
-        pages, own = ome.place_pages(pages, say)
-        pixel_um = pixel_um or own
+        for program in (ome, imagej):
+            pages, own = program.place_pages(pages, say)
+            pixel_um = pixel_um or own
         found += pages
     ome.check_one_shot(found)
     if len(found) < 2:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 the gst-plugins-dff authors
-"""test_stack_ome.py SOURCE_ROOT: what dff-stack takes from a microscope's files: planes, positions, the size of a pixel."""
+"""test_stack_microscopes.py SOURCE_ROOT: what dff-stack takes from microscopes' files: planes, positions, the size of a pixel."""
 import struct
 import sys
 import unittest
@@ -155,6 +155,35 @@ class Ome(Sweeps):
         found.pictures.reverse()
         depths.take_step(found.pictures, 2.5)
         self.assertEqual([picture.position_um for picture in found.pictures], [0, 5, 7.5])
+
+
+class ImageJ(Sweeps):
+    def write(self, *lines, pages=3, a_unit=0.0):
+        text = '\n'.join(('ImageJ=1.54f', f'images={pages}', *lines, ''))
+        write_pages(self.photos / 'a.tif', [flat(50 * number) for number in range(3)], text, a_unit)
+
+    def test_the_spacing_and_the_size_of_a_pixel_are_taken(self):
+        for unit, micrometres in (('micron', 1), ('um', 1), (r'\u00B5m', 1), ('nm', 1e-3), ('mm', 1e3)):
+            self.write('slices=3', f'unit={unit}', 'spacing=2.5', a_unit=4.0)
+            found, pixel_um = sweep.gather([self.photos], 'name', False, self.said.append)
+            np.testing.assert_allclose([picture.position_um for picture in found], np.multiply((0, 2.5, 5), micrometres))
+            self.assertAlmostEqual(pixel_um, 0.25 * micrometres)
+        self.assertEqual(self.said, [])
+
+    def test_what_is_not_said_is_not_known(self):
+        for lines in (('slices=3',), ('slices=3', 'spacing=2'), ('slices=3', 'unit=pixel', 'spacing=2'),
+                      ('slices=3', 'unit=um', 'spacing=nan'), ('slices=3', 'unit=um', 'spacing=0'), ('frames=3', 'unit=um', 'spacing=2')):
+            self.write(*lines)
+            self.assertEqual([picture.position_um for picture in self.gather()], [None] * 3, lines)
+
+    def test_a_sweep_is_one_channel_at_one_time(self):
+        self.write('channels=3', 'slices=4', 'hyperstack=true', pages=12)
+        self.assert_refused('a.tif has 4 slices of 3 channels', act=self.gather)
+
+    def test_planes_that_are_not_there_are_told(self):
+        self.write('slices=900', pages=900)
+        self.gather()
+        self.assertIn('a.tif says that it has 900 planes, and has 3', self.said[0])
 
 
 if __name__ == '__main__':
