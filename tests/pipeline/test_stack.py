@@ -255,9 +255,16 @@ class Results(Program):
     def test_a_preview_is_a_quarter(self):
         for number in range(PLANES):
             write(self.photos / f'{number}.png', np.round(np.kron(plane(number), np.ones((4, 4, 1)))).astype(np.uint8))
-        self.stack(self.photos, '-o', self.out / 'a.png', '--preview')
+        files = {'-o': 'a.png', '--depth': 'z.tif', '--cloud': 'p.ply'}
+        self.stack(self.photos, *(word for name, file in files.items() for word in (name, self.out / file)),
+                   '--preview', '--step', 20, '--pixel-size', 2.5)
         spec, pixels = read(self.out / 'a.png')
         self.assertEqual((spec.width, spec.height), (WIDTH, HEIGHT))
+        spec, _ = read(self.out / 'z.tif')
+        self.assertEqual((spec.get_float_attribute('XResolution'), spec.get_string_attribute('ResolutionUnit')), (1000, 'cm'))
+        vertices = (self.out / 'p.ply').read_bytes().partition(b'end_header\n')[2]
+        across = np.frombuffer(vertices, [('x', '<f4'), ('others', 'V11')])['x']
+        self.assertEqual(across.max() - across.min(), 10 * (WIDTH - 1))
 
 
 class SeenThrough(Program):

@@ -12,7 +12,8 @@ class Output:
     def __init__(self, options, found, look, solved, warps, pixel_um, said):
         self.options, self.found, self.look, self.solved, self.said = options, found, look, solved, said
         self.warps = warps or alignment.unmoved(found.count).warps
-        self.pixel_um = options.pixel_size or pixel_um
+        of_a_pixel = options.pixel_size or pixel_um
+        self.pixel_um = of_a_pixel and of_a_pixel * found.shrink
         self.pixels = found.encoding.decode(solved.picture)
         self.depth, self.unit, self.extent = depths.heights(solved.depth, found.pictures)
 
@@ -36,13 +37,13 @@ class Output:
                 raise Unusable(f'{path} cannot be written: {error.strerror or error}') from error
 
     def write_output(self, files, path):
-        results.write_picture(files, path, self.pixels, self.found.pictures[0].spec, self.description())
+        results.write_picture(files, path, self.pixels, self.found.pictures[0].spec, self.description(), self.pixel_um)
 
     def write_depth(self, files, path):
-        results.write_depth(files, path, self.depth, self.unit, self.extent)
+        results.write_depth(files, path, self.depth, self.unit, self.extent, self.pixel_um)
 
     def write_depth_code(self, files, path):
-        results.write_depth_code(files, path, self.depth, self.unit, self.extent)
+        results.write_depth_code(files, path, self.depth, self.unit, self.extent, self.pixel_um)
 
     def write_depth_colours(self, files, path):
         results.write_colours(files, path, self.depth_colours(), 'depth: warm is near, black is not known')

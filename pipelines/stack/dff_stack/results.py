@@ -111,6 +111,13 @@ def compress_quickly(spec, name):
         spec['png:compressionLevel'] = 1
 
 
+def say_size_of_pixel(spec, name, pixel_um):
+    """In TIFF, whose readers measure by it; other files have it for printers."""
+    if pixel_um and name.suffix.lower() in ('.tif', '.tiff'):
+        spec['XResolution'] = spec['YResolution'] = 1e4 / pixel_um
+        spec['ResolutionUnit'] = 'cm'
+
+
 def plain_spec(pixels, description):
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], kind_of(pixels))
     spec['Software'], spec['ImageDescription'] = SOFTWARE, description
@@ -167,7 +174,7 @@ def as_file_holds(pixels, suffix):
     return pixels
 
 
-def write_picture(files, path, pixels, first, description):
+def write_picture(files, path, pixels, first, description, pixel_um=None):
     """The picture; `first` is the OpenImageIO spec of the first one of the sweep."""
     path = pathlib.Path(path)
     held = as_file_holds(pixels, path.suffix.lower())
@@ -181,6 +188,7 @@ def write_picture(files, path, pixels, first, description):
         taken = text_of(first, 'Exif:DateTimeOriginal')
         if taken:
             spec['DateTime'] = taken  # which EXR files have as the time of capture
+    say_size_of_pixel(spec, path, pixel_um)
     write_with_facts(files.begin(path), held, spec, path)
 
 
@@ -204,22 +212,24 @@ def code_of(depth, least, most):
     return np.nan_to_num(np.clip(code, 1, 65535)).astype(np.uint16)
 
 
-def write_depth(files, path, depth, unit, extent):
+def write_depth(files, path, depth, unit, extent, pixel_um=None):
     """TIFF and EXR hold numbers with a point of the unit, NaN = not known; PNG a code of 16 bits."""
     path = pathlib.Path(path)
     if path.suffix.lower() == '.png':
-        return write_depth_code(files, path, depth, unit, extent)
+        return write_depth_code(files, path, depth, unit, extent, pixel_um)
     pixels = depth.astype(np.float32)[:, :, None]
     spec = plain_spec(pixels, f'depth in {unit}, smaller is nearer, NaN is not known')
     spec.channelnames = ('Z',) if path.suffix.lower() == '.exr' else ('Y',)
+    say_size_of_pixel(spec, path, pixel_um)
     return write(files.begin(path), pixels, spec, path)
 
 
-def write_depth_code(files, path, depth, unit, extent):
+def write_depth_code(files, path, depth, unit, extent, pixel_um=None):
     least, most = extent
     pixels = code_of(depth, least, most)[:, :, None]
     step = (most - least) / 65534
     spec = plain_spec(pixels, f'depth in {unit} is {least:.9g} + {step:.9g} * (pixel - 1), 0 is not known')
+    say_size_of_pixel(spec, pathlib.Path(path), pixel_um)
     write(files.begin(path), pixels, spec, path)
 
 
