@@ -120,7 +120,7 @@ def add_order(group):
     group.add_argument('--order', choices=order.ORDERS, default='name', help='what the order of the pictures is (%(default)s)')
     group.add_argument('--far-first', action='store_true', help='the first picture of the order has the farthest focus')
     group.add_argument('--step', metavar='UM', type=positive, help='micrometres of focus from picture to picture')
-    group.add_argument('--pixel-size', metavar='UM', type=positive, help='micrometres that a pixel shows, for cloud and mesh')
+    group.add_argument('--pixel-size', metavar='UM', type=positive, help='micrometres that a pixel shows, for cloud, mesh and TIFF')
 
 
 def add_work(group):
