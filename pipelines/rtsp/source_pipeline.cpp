@@ -2,10 +2,10 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "source_pipeline.h"
 
-#include "free_pad.h"
 #include "log.h"
 
 #include <gst/app/app.h>
+#include <gst/dff/dff.h>
 #include <stdexcept>
 #include <utility>
 
@@ -17,21 +17,6 @@ constexpr const char *output_names[] = {"depth", "uncertainty", "aif", "planes"}
 
 /* Frames that may wait while the one before is handed out, which takes no longer than copying its metas. */
 constexpr unsigned waiting_frames = 4;
-
-ObjectPointer<GstPipeline> parse(const std::string &launch)
-{
-    g_autoptr(GError) error = nullptr;
-    GstElement *parsed = gst_parse_launch_full(launch.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error);
-    if (!parsed)
-        throw std::invalid_argument(std::string("The source pipeline cannot be used: ") + error->message);
-    gst_object_ref_sink(parsed);
-    if (GST_IS_PIPELINE(parsed))
-        return ObjectPointer<GstPipeline>(GST_PIPELINE(parsed));
-    ObjectPointer<GstPipeline> pipeline(GST_PIPELINE(gst_object_ref_sink(gst_pipeline_new(nullptr))));
-    gst_bin_add(GST_BIN(pipeline.get()), parsed);
-    gst_object_unref(parsed);
-    return pipeline;
-}
 
 GstElement *make(const char *factory)
 {
@@ -48,17 +33,17 @@ std::string text_of(const GError *error, const char *details)
 
 } // namespace
 
-SourcePipeline::SourcePipeline(const std::string &launch) : pipeline_(parse(launch))
+SourcePipeline::SourcePipeline(const std::string &launch)
+    : pipeline_(GST_PIPELINE(gst_object_ref_sink(gst_pipeline_new(nullptr))))
 {
+    g_autoptr(GError) error = nullptr;
+    GstElement *capture = gst_dff_capture_new(launch.c_str(), &error);
+    if (!capture)
+        throw std::invalid_argument(error->message);
+    gst_bin_add(GST_BIN(pipeline_.get()), capture);
     for (const char *name : output_names)
-        if (const ObjectPointer<GstPad> pad = find_free_pad(GST_BIN(pipeline_.get()), name))
+        if (const ObjectPointer<GstPad> pad{gst_element_get_static_pad(capture, name)})
             add_output(name, pad.get());
-    if (outputs_.empty())
-        throw std::invalid_argument(
-            "The source pipeline has no output: name the element whose source pad gives "
-            "the depth depth, that of its uncertainty uncertainty, that of the all-in-focus picture aif, "
-            "that "
-            "of the planes planes; if the pad is linked, a tee behind it");
     const ObjectPointer<GstClock> clock(gst_system_clock_obtain());
     gst_pipeline_use_clock(pipeline_.get(), clock.get());
 }
@@ -82,7 +67,7 @@ void SourcePipeline::add_output(const std::string &name, GstPad *pad)
     gst_bin_add_many(GST_BIN(pipeline_.get()), queue, sink, nullptr);
     gst_element_link(queue, sink);
     const ObjectPointer<GstPad> queue_pad(gst_element_get_static_pad(queue, "sink"));
-    if (gst_pad_link_full(pad, queue_pad.get(), GST_PAD_LINK_CHECK_NOTHING) != GST_PAD_LINK_OK)
+    if (gst_pad_link(pad, queue_pad.get()) != GST_PAD_LINK_OK)
         throw std::invalid_argument("The output " + name + " of the source pipeline cannot be linked");
     GST_INFO("The output %s is %s:%s", name.c_str(), GST_DEBUG_PAD_NAME(pad));
     sinks_[name] = share(sink);

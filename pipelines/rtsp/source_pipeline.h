@@ -13,9 +13,8 @@
 
 namespace dff {
 
-/* The pipeline in front of the server. Its outputs are called depth, uncertainty, aif and planes; each is the
- * free source pad of the element of that name, or a new one if that element is a tee, or else the free source
- * pad of that name of any element. It runs by the system clock, so that times compare with those of other
+/* The pipeline in front of the server: a capture, see gst_dff_capture_new(), of whose outputs it gives out
+ * depth, uncertainty, aif and planes. It runs by the system clock, so that times compare with those of other
  * pipelines. */
 class SourcePipeline {
 public:

@@ -5,6 +5,7 @@
 #include "log.h"
 #include "source_pipeline.h"
 
+#include <gst/dff/dff.h>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -18,23 +19,11 @@ struct ContextUnref {
 };
 using Context = std::unique_ptr<GMainContext, ContextUnref>;
 
-/* What the frames of an output must be, for its mounts to show it. */
-const char *caps_of_output(const std::string &output)
-{
-    if (output == "depth" || output == "uncertainty")
-        return "video/x-raw, format=GRAY16_LE";
-    return output == "aif" ? "video/x-raw" : "ANY";
-}
-
 /* What is wrong with the caps that an output gives; empty if nothing is. */
-std::string fault_of(const std::string &output, GstCaps *caps)
+std::string fault_of(const std::string &output, const GstCaps *caps)
 {
-    g_autoptr(GstCaps) wanted = gst_caps_from_string(caps_of_output(output));
-    if (gst_caps_is_subset(caps, wanted))
-        return "";
-    g_autofree char *text = gst_caps_to_string(caps);
-    return "The output " + output + " of the source pipeline must be " + caps_of_output(output) +
-           ", but is " + text;
+    g_autoptr(GError) error = nullptr;
+    return gst_dff_capture_check_caps(output.c_str(), caps, &error) ? "" : error->message;
 }
 
 /* Outputs that have given no frame yet. Any thread. */

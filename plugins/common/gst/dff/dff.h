@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gst/dff/gstdepthmeta.h>
+#include <gst/dff/gstdffcapture.h>
 #include <gst/dff/gstdffcontext.h>
 #include <gst/dff/gstfocalstackinfo.h>
 #include <gst/dff/gstfocalstackmeta.h>
