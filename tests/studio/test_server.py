@@ -6,6 +6,7 @@ import base64
 import pathlib
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -15,9 +16,14 @@ import numpy as np
 gi.require_version('Gst', '1.0')
 from gi.repository import Gst  # noqa: E402
 
-from studio_process import PATTERNS, SWEEP, Socket, Studio, rig, trusting  # noqa: E402
+from studio_process import PATTERNS, ROOT, SWEEP, Socket, Studio, rig, trusting  # noqa: E402
+
+sys.path.insert(0, str(ROOT / 'pipelines/studio'))
+from dff_studio import Unusable  # noqa: E402
+from dff_studio.source import Source  # noqa: E402
 
 Gst.init(None)
+AIF = 'videotestsrc is-live=true {} ! video/x-raw,format=I420,width=160,height=120,framerate=10/1 ! identity name=aif '
 UPGRADE = {'Connection': 'Upgrade', 'Upgrade': 'websocket', 'Sec-WebSocket-Version': '13', 'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA=='}
 
 
@@ -243,6 +249,62 @@ class Refuses(unittest.TestCase):
                 last.close()
                 before = before or studio.descriptors()
             self.assertLess(studio.descriptors(), before + 12)
+
+    def test_takes_what_the_server_takes(self):
+        """captures.txt: what dff-rtsp-server takes and refuses likewise."""
+        lines = [line.split('|') for line in (ROOT / 'tests/rtsp/captures.txt').read_text().splitlines() if not line.startswith('#')]
+        for outputs, launch in lines:
+            if outputs := set(outputs.split()) - {'motion'}:
+                source = Source(launch, None, None)
+                self.assertEqual(source.sinks.keys() - {'confidence', 'motion'}, outputs, launch)
+            else:
+                self.assertRaises(Unusable, Source, launch, None, None)
+        self.assertGreater(len(lines), 15)
+
+    def test_depth_that_is_none_is_told_by_name(self):
+        with Studio('--launch', PATTERNS.replace('GRAY16_LE', 'GRAY8')) as studio:
+            text = Socket(studio).expect('state', lambda message: message['bad'])['text']
+        for word in ('depth', 'GRAY16_LE', 'GRAY8'):
+            self.assertIn(word, text)
+
+    def test_page_is_told_that_the_source_starts_or_is_silent(self):
+        silent = 'videotestsrc is-live=true ! video/x-raw,format=GRAY16_LE ! identity drop-probability=1 name=depth'
+        with Studio('--launch', AIF.format('num-buffers=5') + silent) as studio:
+            page = Socket(studio)
+            self.assertIn('starts', page.expect('hello')['state'])
+            page.expect('state', lambda message: not message['text'])
+            self.assertGreater(page.expect('health', lambda message: message['rate'] > 0)['rate'], 5)
+            self.assertIn('No frame for', page.expect('state')['text'])
+
+    def test_picture_alone_or_planes_alone_are_shown(self):
+        for launch, outputs in ((AIF.format(''), ['aif']), (AIF.format('').replace('aif', 'planes'), ['planes'])):
+            with Studio('--launch', launch) as studio:
+                page = Socket(studio)
+                self.assertEqual(page.expect('hello')['outputs'], outputs)
+                page.send(type='watch')
+                page.expect('offer')
+                frozen = page.ask('frozen', type='freeze', file='picture.png')
+                self.assertEqual((frozen['picture'], frozen['facts'], frozen['file']), (True, None, 'picture.png'))
+                self.assertEqual(studio.get(f'/frozen/{frozen["number"]}/picture.png')[1][:4], b'\x89PNG')
+                self.assertIn('no depth', studio.get(f'/frozen/{frozen["number"]}/cloud.ply')[1].decode())
+
+    def test_page_is_served_where_there_is_nothing_to_show(self):
+        with Studio('--launch', PATTERNS.partition('name=aif')[2].replace('name=depth', 'name=uncertainty')) as studio:
+            page = Socket(studio)
+            self.assertEqual(page.expect('hello')['tracks'], [])
+            page.send(type='watch')
+            page.expect('state', lambda message: not message['text'])
+            page.send(type='freeze')
+            self.assertIn('no frame', page.expect('problem')['text'])
+
+    def test_uncertainty_comes_with_the_value(self):
+        with Studio('--launch', rig().replace('name=maker', 'name=maker maker.uncertainty ! queue ! identity name=uncertainty  maker.')) as studio:
+            page = Socket(studio)
+            self.assertIn('uncertainty', page.expect('hello')['outputs'])
+            page.expect('health', lambda message: message['rate'] > 0)
+            frozen = page.ask('frozen', type='freeze')['number']
+            found = [page.ask('probe', type='probe', x=x / 8, y=0.5, frozen=frozen).get('deviation') for x in range(1, 8)]
+            self.assertTrue(any(deviation and 0 < deviation < 1 for deviation in found), found)
 
     def test_source_that_ends_is_started_again(self):
         with Studio('--launch', PATTERNS.replace('is-live=true', 'is-live=true num-buffers=5')) as studio:

@@ -34,6 +34,8 @@ def hand_over(options):
     try:
         source = Source(options.launch, recording.take_sample, recording.take_state, overlays=('confidence',),
                         convert={'aif': 'videoconvert ! jpegenc quality=90'}, on_end=loop.quit)
+        if not source.sinks.keys() & {'depth', 'aif'}:
+            raise Unusable('This source gives neither depth nor a picture: there is nothing to hand over')
         recording.source = source
         for number in (signal.SIGINT, signal.SIGTERM):
             GLib.unix_signal_add(GLib.PRIORITY_HIGH, number, loop.quit)

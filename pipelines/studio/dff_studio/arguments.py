@@ -16,8 +16,9 @@ sharpness curve, and the elements' properties to turn. Any number of browsers lo
 EPILOG = '''\
 THE SOURCE
   --launch takes what dff-rtsp-server takes: any pipeline in the notation of gst-launch-1.0. The element named depth, or any
-  element's free source pad of that name, gives depth; aif the all-in-focus picture. Confidence, motion and the planes come from
-  the pipeline's dffdepth by themselves.
+  element's free source pad of that name, gives depth; aif the all-in-focus picture, planes what is shown where there is none,
+  uncertainty what is told beside depth. Confidence, motion and the planes of each stack come from the pipeline's dffdepth by
+  themselves.
 
 WHO MAY LOOK
   Without --address, browsers of this machine alone. With it, --accounts and --certificate are needed.

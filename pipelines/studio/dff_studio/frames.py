@@ -120,14 +120,16 @@ class Frames:
         self.lock = threading.Lock()
         self.last = {}
         self.depths = collections.deque(maxlen=6)  # since a picture comes later than its depth
-        self.arrivals = collections.deque(maxlen=64)
-        self.age = None
+        self.arrivals = collections.deque(maxlen=64)  # of depth, or of pictures where there is none
+        self.age = self.latest = None
 
     def put(self, output, sample, age):
         with self.lock:
             self.last[output] = sample
+            self.latest = time.monotonic()
             if output == 'depth':
                 self.depths.append(sample)
+            if output == 'depth' or (output == 'aif' and 'depth' not in self.last):
                 self.arrivals.append(time.monotonic())
                 self.age = age
 
@@ -150,18 +152,24 @@ class Frames:
         return picture, Depth.of(depth) if depth else None
 
     def pace(self):
-        """Depth frames a second over the last three, and seconds from the first exposure of the last to its depth."""
+        """Frames a second over the last three, and seconds from the first exposure of the last until it was there."""
         now = time.monotonic()
         with self.lock:
             recent = [arrival for arrival in self.arrivals if now - arrival < 3]
             rate = (len(recent) - 1) / (recent[-1] - recent[0]) if len(recent) > 1 and recent[-1] > recent[0] else 0.0
             return rate, self.age if recent else None
 
+    def silence(self):
+        """Seconds since the last frame of any output; none where there was none."""
+        with self.lock:
+            return time.monotonic() - self.latest if self.latest else 0.0
+
     def forget(self):
         with self.lock:
             self.last.clear()
             self.depths.clear()
             self.arrivals.clear()
+            self.latest = None
 
 
 def place(shape, x, y):
@@ -170,7 +178,14 @@ def place(shape, x, y):
     return min(max(int(x * width), 0), width - 1), min(max(int(y * height), 0), height - 1)
 
 
-def value_at(depth, x, y, overlays):
+def deviation_at(uncertainty, column, row):
+    """One standard deviation of a pixel in the unit of its depth; NaN where not known. `uncertainty`: its sample."""
+    info = GstDff.buffer_get_depth_meta(uncertainty.get_buffer())
+    pixel = pixels_of(uncertainty.get_buffer(), uncertainty.get_caps(), '<u2')[row, column]
+    return info.scale * float(pixel) if info and pixel else math.nan
+
+
+def value_at(depth, x, y, overlays, uncertainty=None):
     """What is known of a place: x, y in parts of width and height; `overlays`: samples by name."""
     pixels = depth.pixels()
     column, row = place(pixels.shape, x, y)
@@ -181,6 +196,8 @@ def value_at(depth, x, y, overlays):
         overlay = pixels_of(sample.get_buffer(), sample.get_caps(), 'u1')
         at_x, at_y = place(overlay.shape, x, y)
         found[name] = int(overlay[at_y, at_x]) / 255
+    if uncertainty and size_of(uncertainty) == size_of(depth.sample):
+        found['deviation'] = deviation_at(uncertainty, column, row)
     return without_nan(found)
 
 

@@ -12,6 +12,7 @@ from dff_studio import Unusable, missing_typelib
 def needed():
     """What is not there to be imported, in words for the user; empty if all is."""
     packages = {'Gst': ('1.0', 'gir1.2-gstreamer-1.0'), 'GstVideo': ('1.0', 'gir1.2-gst-plugins-base-1.0'),
+                'GstSdp': ('1.0', 'gir1.2-gst-plugins-base-1.0'),
                 'GstWebRTC': ('1.0', 'gir1.2-gst-plugins-bad-1.0'), 'Soup': ('3.0', 'gir1.2-soup-3.0'),
                 'GstDff': ('1.0', 'the typelib of these plug-ins')}
     try:

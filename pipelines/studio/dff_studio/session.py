@@ -64,7 +64,8 @@ class Session:
 
     def watch(self, _):
         self.leave()
-        self.viewer = Viewer(self.studio.video, self.send)
+        if self.studio.video.tracks:
+            self.viewer = Viewer(self.studio.video, self.send)
 
     def take_answer(self, message):
         if self.viewer:
@@ -84,9 +85,10 @@ class Session:
         self.send(self.studio.controls())
 
     def probe(self, message):
-        depth = self.studio.depth_of(number(message))
-        overlays = self.studio.overlays_of(number(message))
-        self.send({'type': 'probe', **frames.value_at(depth, part(message, 'x'), part(message, 'y'), overlays)})
+        frozen = number(message)
+        known = frames.value_at(self.studio.depth_of(frozen), part(message, 'x'), part(message, 'y'),
+                                self.studio.overlays_of(frozen), self.studio.uncertainty_of(frozen))
+        self.send({'type': 'probe', **known})
 
     def profile(self, message):
         line = [part(message, name) for name in ('x0', 'y0', 'x1', 'y1')]
@@ -109,8 +111,9 @@ class Session:
         if not self.studio.stacks.ask(take):
             raise Unusable('This source gives no planes: there is no dffdepth in its pipeline')
 
-    def freeze(self, _):
-        self.send(self.studio.freeze())
+    def freeze(self, message):
+        """`file`: what it is for, which comes back."""
+        self.send({**self.studio.freeze(), 'file': message.get('file')})
 
     def record(self, message):
         if message['on']:

@@ -4,25 +4,24 @@
 import concurrent.futures
 import logging
 
-from gi.repository import GLib, Gst
+import gi
 
-from dff_studio import Unusable
+gi.require_version('GstDff', '1.0')
+from gi.repository import GLib, Gst, GstDff  # noqa: E402
 
-OUTPUTS = ('depth', 'aif', 'planes', 'confidence', 'motion')  # the first three as dff-rtsp-server takes them
+from dff_studio import Unusable  # noqa: E402
+
+OVERLAYS = ('confidence', 'motion')
 WAITS = (0.5, 1, 2, 4, 8, 10)  # seconds before the next start, after each failure in a row
 log = logging.getLogger('dff-studio')
 
 
 def parse(launch):
+    """A capture of it, see gst_dff_capture_new(), which is what dff-rtsp-server makes of it too."""
     try:
-        parsed = Gst.parse_launch_full(launch, None, Gst.ParseFlags.FATAL_ERRORS)
+        return GstDff.dff_capture_new(launch)
     except GLib.Error as error:
-        raise Unusable(f'The source pipeline cannot be used: {error.message}') from None
-    if isinstance(parsed, Gst.Pipeline):
-        return parsed
-    pipeline = Gst.Pipeline.new(None)
-    pipeline.add(parsed)
-    return pipeline
+        raise Unusable(error.message) from None
 
 
 def items(iterator):
@@ -37,21 +36,6 @@ def items(iterator):
             found = []
         else:
             return found
-
-
-def free_pad(bin_, name):
-    """The free source pad of the element of that name, a new one if it is a tee, or else that of this name of any element:
-    the rule of dff-rtsp-server."""
-    if element := bin_.get_by_name(name):
-        free = [pad for pad in element.srcpads if not pad.is_linked()]
-        if free:
-            return free[0]
-        return element.request_pad_simple('src_%u') if element.get_pad_template('src_%u') else None
-    for child in items(bin_.iterate_elements()):
-        for pad in child.srcpads:
-            if pad.get_name() == name and not pad.is_linked():
-                return pad
-    return None
 
 
 def of_factory(bin_, name):
@@ -76,19 +60,17 @@ class Source:
     streaming threads, `age` in seconds since the first exposure; `on_state(text)` by the main loop, empty when it runs. What
     takes its time, starting and stopping a camera, is done by a thread of its own. With `on_end`, that is called at the end of
     the stream in place of another start. `overlays`: what dffdepth is asked for beside depth; `convert`: elements between an
-    output and its samples, by the output's name."""
+    output and its samples, by the output's name. `delivered`: whether there was a sample since the last start; `progress`: what
+    an element says that keeps the first one waiting."""
 
-    def __init__(self, launch, on_sample, on_state, overlays=OUTPUTS[3:], convert=None, on_end=None):
+    def __init__(self, launch, on_sample, on_state, overlays=OVERLAYS, convert=None, on_end=None):
         self.on_sample, self.on_state, self.on_end = on_sample, on_state, on_end
         self.convert = convert or {}
-        self.pipeline = parse(launch)
+        self.pipeline, capture = Gst.Pipeline.new(None), parse(launch)
+        self.pipeline.add(capture)
         self.sinks = {}
-        for name in OUTPUTS[:3]:
-            if pad := free_pad(self.pipeline, name):
-                self.tap(name, pad, self.pipeline)
-        if not self.sinks.keys() & {'depth', 'aif'}:
-            raise Unusable('The source pipeline has no output: name the element whose source pad gives the depth depth, that of '
-                           'the all-in-focus picture aif; if the pad is linked, a tee behind it')
+        for pad in list(capture.srcpads):
+            self.tap(pad.get_name(), pad, self.pipeline)
         self.depth_element = of_factory(self.pipeline, 'dffdepth')
         for name in overlays:
             self.tap_overlay(name)
@@ -98,17 +80,16 @@ class Source:
         bus.connect('message', self.take_message)
         self.worker = concurrent.futures.ThreadPoolExecutor(1, 'source')
         self.wanted = self.failed = self.delivered = False
+        self.progress = ''
+        self.taken_caps = {}
         self.failures = 0
         self.retry = None
 
     def tap_overlay(self, name):
         """What dffdepth can tell beside depth, unless the pipeline has a use for it already."""
-        if pad := free_pad(self.pipeline, name):
-            return self.tap(name, pad, pad.get_parent_element().get_parent())
         if self.depth_element and not self.depth_element.get_static_pad(name):
             if pad := self.depth_element.request_pad_simple(name):
                 self.tap(name, pad, self.depth_element.get_parent())
-        return None
 
     def tap(self, name, pad, parent):
         queue, sink = Gst.ElementFactory.make('queue'), Gst.ElementFactory.make('appsink')
@@ -135,21 +116,42 @@ class Source:
         sample = sink.emit('pull-sample')
         if sample is None:
             return Gst.FlowReturn.EOS
-        self.delivered = True
+        if not self.is_fit(name, sample.get_caps()):
+            return Gst.FlowReturn.OK
         running = running_time(sample)
         now = self.pipeline.get_pipeline_clock().get_time() - self.pipeline.get_base_time()
         self.on_sample(name, sample, None if running is None else (now - running) / Gst.SECOND)
+        if not self.delivered:
+            self.delivered = True
+            GLib.idle_add(self.tell_delivery)
         return Gst.FlowReturn.OK
+
+    def tell_delivery(self):
+        if not self.failed:
+            self.on_state('')
+
+    def is_fit(self, name, caps):
+        """Whether an output gives what its name says."""
+        if name in self.convert or (name in self.taken_caps and caps.is_equal(self.taken_caps[name])):
+            return True
+        try:
+            GstDff.dff_capture_check_caps(name, caps)
+        except GLib.Error as error:
+            GLib.idle_add(self.fail, error.message)
+            return False
+        self.taken_caps[name] = caps
+        return True
 
     def want(self, wanted):
         if wanted != self.wanted:
-            self.wanted = wanted
+            self.wanted, self.delivered = wanted, False
             self.forget_retry()
             self.failures = 0
             self.worker.submit(self.start if wanted else self.stop)
 
     def start(self):
         self.failed = self.delivered = False
+        self.progress = ''
         live = self.pipeline.set_state(Gst.State.PAUSED) == Gst.StateChangeReturn.NO_PREROLL
         for sink in self.sinks.values():
             sink.set_property('sync', not live)  # what is not live is slowed down to its rate
@@ -180,6 +182,9 @@ class Source:
             self.on_end()
         elif message.type == Gst.MessageType.EOS:
             self.fail('It came to its end')
+        elif message.type == Gst.MessageType.PROGRESS:
+            kind, _, text = message.parse_progress()
+            self.progress = '' if kind == Gst.ProgressType.COMPLETE else text
         elif message.type == Gst.MessageType.WARNING:
             log.warning('%s', message.parse_warning()[0].message)
         elif message.type == Gst.MessageType.LATENCY:

@@ -14,14 +14,15 @@ from dff_studio import Unusable, controls, frames, saving
 from dff_studio.frames import Frames
 from dff_studio.planes import StackTap
 from dff_studio.session import Session
-from dff_studio.source import Source
+from dff_studio.source import OVERLAYS, Source
 from dff_studio.video import TRACKS, Video
 from dff_studio.web import parts
 
-OVERLAYS = ('confidence', 'motion')
 MOST_SESSIONS = 8
 KEPT_FROZEN, KEPT_STACKS, KEPT_RECORDINGS = 8, 4, 4
 REST = 5  # seconds without anybody after which the source stops
+SILENCE = 5  # seconds without a frame after which the page says so
+PLANES_PAUSE = 1 / 12  # seconds between two planes that are shown, where there is no other picture
 log = logging.getLogger('dff-studio')
 
 
@@ -56,27 +57,51 @@ class Studio:
     def __init__(self, launch, addresses, bitrate):
         self.frames = Frames()
         self.source = Source(launch, self.take_frame, self.take_state)
-        self.video = Video(addresses, bitrate)
         self.stacks = StackTap(self.source.depth_element)
-        self.outputs = [name for name in self.source.sinks if name != 'planes'] + (['stacks'] if self.stacks.pad else [])
+        self.shows_planes = 'aif' not in self.source.sinks and 'planes' in self.source.sinks
+        shown = self.source.sinks.keys() | ({'aif'} if self.shows_planes else set())
+        self.video = Video(addresses, bitrate, [track for track in TRACKS if track in shown])
+        self.plane_shown = 0.0
+        self.outputs = [name for name in self.source.sinks if name != 'planes' or self.shows_planes]
+        self.outputs += ['stacks'] if self.stacks.pad else []
         self.sessions = []
         self.frozen, self.kept_stacks = Kept(KEPT_FROZEN), Kept(KEPT_STACKS)
         self.recordings = Kept(KEPT_RECORDINGS, saving.Recording.forget)
         self.recording = None
-        self.state = ''
+        self.trouble = ''
+        self.state = ('', False)
         self.rest = None
         GLib.timeout_add(1000, self.tick)
 
     def take_frame(self, output, sample, age):
         if output == 'planes':
-            return
+            if not self.shows_planes or time.monotonic() - self.plane_shown < PLANES_PAUSE:
+                return
+            self.plane_shown = time.monotonic()
+            output = 'aif'
         self.frames.put(output, sample, age)
         if output in TRACKS:
             self.video.push(output, sample)
 
     def take_state(self, text):
-        self.state = text
-        self.tell({'type': 'state', 'text': text})
+        self.trouble = text
+        self.tell_state()
+
+    def state_of_source(self):
+        """In words for the page, and whether it is trouble; no words where frames come."""
+        if self.trouble:
+            return self.trouble, True
+        if not self.source.delivered:
+            return self.source.progress or 'The source starts', False
+        silence = self.frames.silence()
+        return (f'No frame for {silence:.0f} s', True) if silence > SILENCE else ('', False)
+
+    def tell_state(self):
+        """Where it has changed."""
+        state = self.state_of_source()
+        if state != self.state:
+            self.state = state
+            self.tell({'type': 'state', 'text': state[0], 'bad': state[1]})
 
     def tell(self, message):
         for session in list(self.sessions):
@@ -88,14 +113,16 @@ class Studio:
         if len(self.sessions) >= MOST_SESSIONS:
             connection.close(1013, f'{MOST_SESSIONS} browsers look already')  # try again later
             return
-        session = Session(self, connection)
-        self.sessions.append(session)
-        session.send({'type': 'hello', 'outputs': self.outputs, 'controls': controls.controls(self.source.pipeline),
-                      'recording': self.recording is not None, 'state': self.state})
         if self.rest:
             GLib.source_remove(self.rest)
             self.rest = None
         self.source.want(True)
+        self.tell_state()
+        session = Session(self, connection)
+        self.sessions.append(session)
+        session.send({'type': 'hello', 'outputs': self.outputs, 'tracks': self.video.tracks,
+                      'controls': controls.controls(self.source.pipeline), 'recording': self.recording is not None,
+                      'state': self.state[0], 'bad': self.state[1]})
 
     def gone(self, session):
         if session in self.sessions:
@@ -111,6 +138,7 @@ class Studio:
         return GLib.SOURCE_REMOVE
 
     def tick(self):
+        self.tell_state()
         if self.sessions:
             rate, age = self.frames.pace()
             self.tell({'type': 'health', 'rate': rate, 'latency': age, 'viewers': len(self.sessions),
@@ -146,6 +174,9 @@ class Studio:
             raise Unusable('There is no depth yet')
         return depth
 
+    def uncertainty_of(self, number):
+        return self.frozen.get(number)['uncertainty'] if number and self.frozen.get(number) else self.frames.get('uncertainty')
+
     def overlays_of(self, number):
         if number and self.frozen.get(number):
             return self.frozen.get(number)['overlays']
@@ -155,7 +186,8 @@ class Studio:
         picture, depth = self.frames.pair()
         if not picture and not depth:
             raise Unusable('There is no frame yet')
-        number = self.frozen.add({'picture': picture, 'depth': depth, 'overlays': self.overlays_of(0)})
+        number = self.frozen.add({'picture': picture, 'depth': depth, 'overlays': self.overlays_of(0),
+                                  'uncertainty': self.uncertainty_of(0)})
         return {'type': 'frozen', 'number': number, 'picture': picture is not None, 'facts': depth.facts() if depth else None}
 
     def start_recording(self):

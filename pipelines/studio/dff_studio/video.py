@@ -44,15 +44,16 @@ def ice_of(peer):
 
 
 class Video:
-    """The encoders, and the viewers behind them. `addresses`: those that media may go by; empty: all of this machine."""
+    """The encoders, and the viewers behind them. `addresses`: those that media may go by; empty: all of this machine. `tracks`:
+    those that there are pictures for; webrtcbin offers nothing before all have some."""
 
-    def __init__(self, addresses, bitrate):
+    def __init__(self, addresses, bitrate, tracks):
         for element, package in PACKAGES.items():
             if not Gst.ElementFactory.find(element):
                 raise Unusable(f'GStreamer has no element {element}: install {package}')
-        self.addresses = addresses
-        self.pipeline = Gst.parse_launch(' '.join(description(track, bitrate) for track in TRACKS))
-        self.sources = {track: self.pipeline.get_by_name(track) for track in TRACKS}
+        self.addresses, self.tracks = addresses, tracks
+        self.pipeline = Gst.parse_launch(' '.join(description(track, bitrate) for track in tracks)) if tracks else Gst.Pipeline.new(None)
+        self.sources = {track: self.pipeline.get_by_name(track) for track in tracks}
         self.caps = {}
         bus = self.pipeline.get_bus()
         bus.add_signal_watch()
@@ -86,7 +87,7 @@ class Video:
         return True
 
     def ask_for_whole_picture(self):
-        for track in TRACKS:
+        for track in self.tracks:
             event = GstVideo.video_event_new_upstream_force_key_unit(Gst.CLOCK_TIME_NONE, True, 0)
             self.pipeline.get_by_name(f'{track}-encoder').get_static_pad('src').send_event(event)
 
@@ -114,11 +115,11 @@ class Viewer:
             self.peer.connect('on-negotiation-needed', lambda peer: peer.emit('create-offer', None, self.then(self.take_offer))),
             self.peer.connect('on-ice-candidate', lambda _, line, text: self.send({'type': 'candidate', 'line': line, 'candidate': text})),
             self.peer.connect('notify::ice-connection-state', self.look_at_connection)]
-        inlets = [self.inlet(track) for track in range(len(TRACKS))]
+        inlets = [self.inlet(track) for track in range(len(video.tracks))]
         video.pipeline.add(self.bin)
         self.bin.sync_state_with_parent()  # before packets come: a tee that meets a pad at rest gives up, for all
         self.pads = []
-        for track, inlet in zip(TRACKS, inlets):
+        for track, inlet in zip(video.tracks, inlets):
             tee = video.pipeline.get_by_name(f'{track}-tee')
             pad = tee.request_pad_simple('src_%u')
             self.pads.append((tee, pad))

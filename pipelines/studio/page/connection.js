@@ -5,15 +5,18 @@
 const FIRST_WAIT = 500, LONGEST_WAIT = 5000; // milliseconds before the next try
 const HERE = 30000; // milliseconds between two signs of life
 const PATIENCE = 6000; // milliseconds that a broken video may take to mend itself
+const LOOK = 4000; // milliseconds between two looks at what of the video gets through
+const LOST = 0.1; // share of lost packets that is told
 
 export class Connection extends EventTarget {
-  // `videos`: the elements for picture and depth, in the order of the tracks.
+  // `videos`: the elements for the tracks, by name.
   constructor(videos) {
     super();
     this.videos = videos;
     this.wait = FIRST_WAIT;
     this.open();
     setInterval(() => this.send({ type: 'here' }), HERE);
+    setInterval(() => this.look(), LOOK);
   }
 
   open() {
@@ -28,6 +31,7 @@ export class Connection extends EventTarget {
       if (message.type === 'offer') this.answer(message.sdp).catch(problem => this.tell('problem', { text: `No video: ${problem.message}` }));
       else if (message.type === 'candidate') this.add(message);
       else this.tell(message.type, message);
+      if (message.type === 'hello') this.tracks = message.tracks; // in the order of the offer
     };
     this.socket.onclose = event => {
       this.leave();
@@ -50,7 +54,7 @@ export class Connection extends EventTarget {
     const peer = this.peer = new RTCPeerConnection({ iceServers: [] });
     this.early = [];
     peer.ontrack = event => {
-      const video = this.videos[peer.getTransceivers().indexOf(event.transceiver)];
+      const video = this.videos[this.tracks[peer.getTransceivers().indexOf(event.transceiver)]];
       if (!video) return;
       if ('jitterBufferTarget' in event.receiver) event.receiver.jitterBufferTarget = 0;
       video.srcObject = new MediaStream([event.track]);
@@ -63,14 +67,44 @@ export class Connection extends EventTarget {
     };
     peer.onconnectionstatechange = () => {
       clearTimeout(this.broken);
-      if (peer.connectionState === 'failed') this.send({ type: 'watch' });
-      if (peer.connectionState === 'disconnected') this.broken = setTimeout(() => this.send({ type: 'watch' }), PATIENCE);
+      if (peer.connectionState === 'connecting') this.tellVideo('The video comes', false);
+      if (peer.connectionState === 'connected') this.tellVideo('', false);
+      if (peer.connectionState === 'failed') {
+        this.tellVideo('The video finds no way from the server to this browser: trying again', true);
+        this.send({ type: 'watch' });
+      }
+      if (peer.connectionState === 'disconnected') {
+        this.tellVideo('The video is interrupted', true);
+        this.broken = setTimeout(() => this.send({ type: 'watch' }), PATIENCE);
+      }
     };
     await peer.setRemoteDescription({ type: 'offer', sdp });
     await peer.setLocalDescription(await peer.createAnswer());
     this.send({ type: 'answer', sdp: peer.localDescription.sdp });
     for (const candidate of this.early) await peer.addIceCandidate(candidate);
     this.early = null;
+  }
+
+  tellVideo(text, bad) {
+    this.tell('video', { text, bad });
+  }
+
+  // What of the video gets through.
+  async look() {
+    const peer = this.peer, before = this.seen, now = { decoded: 0, received: 0, lost: 0 };
+    if (peer?.connectionState !== 'connected') return;
+    for (const stream of (await peer.getStats()).values())
+      if (stream.type === 'inbound-rtp') {
+        now.decoded += stream.framesDecoded;
+        now.received += stream.packetsReceived;
+        now.lost += stream.packetsLost;
+      }
+    if (peer !== this.peer) return;
+    this.seen = now;
+    if (!before || now.received === before.received) return;
+    const lost = (now.lost - before.lost) / (now.lost - before.lost + now.received - before.received);
+    const bad = lost > LOST || now.decoded === before.decoded;
+    this.tellVideo(bad ? `${Math.round(100 * lost)} % of the video is lost on the way: a lower --bitrate of dff-studio may do` : '', bad);
   }
 
   add({ line, candidate }) {
@@ -81,6 +115,6 @@ export class Connection extends EventTarget {
   leave() {
     clearTimeout(this.broken);
     this.peer?.close();
-    this.peer = null;
+    this.peer = this.seen = null;
   }
 }

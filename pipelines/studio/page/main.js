@@ -2,7 +2,7 @@
 // Copyright (C) 2026 the gst-plugins-dff authors
 // What belongs together on the page.
 import { Connection } from './connection.js';
-import { Controls, showHealth } from './panels.js';
+import { Controls, forgetHealth, showHealth } from './panels.js';
 import { Planes } from './planes.js';
 import { draw, short } from './plots.js';
 import { Relief } from './relief.js';
@@ -25,9 +25,13 @@ function problem(text) {
   problemTimer = setTimeout(() => { part('problem').hidden = true; }, 7000);
 }
 
-function state(text, bad) {
-  part('state').textContent = text;
-  part('state').classList.toggle('bad', bad);
+// What is going on with the server, the source, the video: the first that is not as it should be.
+const news = { server: null, source: null, video: null };
+function state(of, text, bad) {
+  news[of] = text ? { text, bad } : null;
+  const first = news.server ?? news.source ?? news.video ?? { text: 'live', bad: false };
+  part('state').textContent = first.text;
+  part('state').classList.toggle('bad', first.bad);
 }
 
 // Calls `work` at once, and then not before `pause` milliseconds are over, with what it was last called with.
@@ -44,7 +48,7 @@ function spaced(work, pause) {
   };
 }
 
-const server = new Connection([picture, depth]);
+const server = new Connection({ aif: picture, depth });
 const send = message => server.send(message);
 const onFrame = message => ({ ...message, frozen: frozen?.number ?? 0 });
 const isShown = name => !part(name).hidden;
@@ -55,7 +59,8 @@ let relief = null;
 try {
   relief = new Relief(part('relief'));
 } catch (error) {
-  problem(error.message);
+  part('no-relief').textContent = error.message;
+  part('no-relief').hidden = false;
 }
 
 (function eachFrame() {
@@ -99,7 +104,8 @@ part('overlay').addEventListener('change', chooseOverlay);
 server.addEventListener('probe', ({ detail }) => {
   const bold = document.createElement('b');
   const metres = detail.metres !== null && detail.symbol !== 'mm' ? `, ${short(detail.metres)} m` : '';
-  bold.textContent = detail.value === null ? 'not known' : `${short(detail.value)} ${detail.symbol}${metres}`;
+  const deviation = typeof detail.deviation === 'number' ? ` ± ${short(detail.deviation)}` : '';
+  bold.textContent = detail.value === null ? 'not known' : `${short(detail.value)}${deviation} ${detail.symbol}${metres}`;
   const parts = [`${detail.x}, ${detail.y}:  `, bold];
   if ('confidence' in detail) parts.push(`   confidence ${(100 * detail.confidence).toFixed(0)} %`);
   if (detail.motion > 0.5) parts.push('   moved');
@@ -125,15 +131,23 @@ server.addEventListener('histogram', ({ detail }) => {
 const controls = new Controls(part('controls'), (name, property, value) => send({ type: 'set', element: name, name: property, value }));
 server.addEventListener('hello', ({ detail }) => {
   outputs = detail.outputs;
+  const pictures = outputs.includes('aif') || outputs.includes('planes');
+  part('no-picture').hidden = pictures;
+  part('no-depth').hidden = outputs.includes('depth');
+  part('picture-name').textContent = outputs.includes('planes') ? 'Planes, one after the other' : 'All in focus';
+  if (!outputs.includes('stacks')) part('planes-hint').textContent = 'This source gives no stacks to look into: there is no dffdepth in its pipeline';
   for (const option of part('overlay').options) option.disabled = option.value !== '' && !outputs.includes(option.value);
   controls.show(detail.controls);
   recording(detail.recording);
-  state(detail.state || 'live', detail.state !== '');
+  state('server', '');
+  state('source', detail.state, detail.bad);
 });
 server.addEventListener('controls', ({ detail }) => controls.show(detail.controls));
-server.addEventListener('state', ({ detail }) => state(detail.text || 'live', detail.text !== ''));
+server.addEventListener('state', ({ detail }) => state('source', detail.text, detail.bad));
+server.addEventListener('video', ({ detail }) => state('video', detail.text, detail.bad));
 server.addEventListener('closed', ({ detail }) => {
-  state(detail.text || 'The server is gone: trying again', true);
+  state('server', detail.text || 'The server is gone: trying again', true);
+  forgetHealth();
   if (frozen) thaw(); // a new server does not know it
 });
 server.addEventListener('health', ({ detail }) => {
@@ -152,6 +166,7 @@ async function hold(detail) {
   const held = { number, facts, codes: null };
   if (facts) {
     const answer = await fetch(`/frozen/${number}/depth.bin`);
+    if (!answer.ok) throw new Error(await answer.text());
     held.codes = new Uint16Array(await answer.arrayBuffer());
     const canvas = depthView.querySelector('.frozen');
     paint(canvas, held.codes, facts.width, facts.height);
@@ -169,6 +184,7 @@ async function hold(detail) {
   }
   part('freeze').setAttribute('aria-pressed', 'true');
   part('freeze').textContent = 'Go on';
+  part('planes-live').hidden = false;
   chooseOverlay();
   if (facts) send(onFrame({ type: 'histogram' }));
   if (cut) askProfile();
@@ -179,24 +195,25 @@ function thaw() {
   for (const view of [pictureView, depthView]) view.querySelector('.frozen').hidden = true;
   part('freeze').setAttribute('aria-pressed', 'false');
   part('freeze').textContent = 'Freeze';
+  part('planes-live').hidden = true;
   chooseOverlay();
 }
 
-let saving = null; // the file that waits for a frame to be frozen
 server.addEventListener('frozen', ({ detail }) => {
-  if (saving) {
-    download(`/frozen/${detail.number}/${saving}`, saving);
-    saving = null;
-  } else {
-    hold(detail).catch(error => problem(`This frame cannot be held: ${error.message}`));
-  }
+  if (detail.file) download(`/frozen/${detail.number}/${detail.file}`, detail.file);
+  else hold(detail).catch(error => problem(`This frame cannot be held: ${error.message}`));
 });
 part('freeze').addEventListener('click', () => frozen ? thaw() : send({ type: 'freeze' }));
 
 // Save and record
 
 async function download(url, name) {
-  const answer = await fetch(url);
+  let answer;
+  try {
+    answer = await fetch(url);
+  } catch {
+    return problem(`${name} was not saved: the server is gone`);
+  }
   if (!answer.ok) return problem(await answer.text());
   const link = document.createElement('a');
   link.href = URL.createObjectURL(await answer.blob());
@@ -208,12 +225,8 @@ async function download(url, name) {
 for (const button of document.querySelectorAll('#save [data-file]')) {
   button.addEventListener('click', () => {
     part('save').open = false;
-    if (frozen) {
-      download(`/frozen/${frozen.number}/${button.dataset.file}`, button.dataset.file);
-    } else {
-      saving = button.dataset.file;
-      send({ type: 'freeze' });
-    }
+    if (frozen) download(`/frozen/${frozen.number}/${button.dataset.file}`, button.dataset.file);
+    else send({ type: 'freeze', file: button.dataset.file });
   });
 }
 

@@ -112,6 +112,12 @@ function sum(stats, names) {
   return total;
 }
 
+const HEALTH = ['rate', 'latency', 'lost', 'late', 'disagreements'];
+
+export function forgetHealth() {
+  for (const id of HEALTH) document.getElementById(id).textContent = '–';
+}
+
 export function showHealth({ rate, latency, stats, viewers }, panel) {
   const put = (id, text) => { document.getElementById(id).textContent = text; };
   const count = names => sum(stats, names)?.toString() ?? '–';
