@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/denoise_strips.h"
 
+#include "engine/denoised_component.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,6 @@ namespace dff {
 
 namespace {
 
-constexpr uint32_t tile_pixels = 8;
 constexpr cl_int strip_rows = 23;    /* a sixth of 1080 pixels: enough work-items for a few cores */
 constexpr size_t brightnesses = 256; /* BRIGHTNESSES of the kernels */
 constexpr cl_int shares_ahead = 16;  /* SHARES of the kernels */

@@ -2,8 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/stack_denoiser.h"
 
+#include "engine/denoised_component.h"
 #include "engine/luma.h"
-#include "engine/opencl/program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,6 @@ namespace dff {
 
 namespace {
 
-constexpr uint32_t tile_pixels = 8;
 constexpr float sigmas_of_noise = 6.0F; /* that a tile may be off, of strength 1 */
 constexpr unsigned mean_unit = 128;     /* of samples of 8 bits: MEAN_UNIT of the kernels */
 constexpr uint32_t enough_tiles = 8000; /* of one plane, to learn the noise from */
@@ -25,9 +24,6 @@ constexpr float most_alike = 0.2F; /* samples of a tile, of all, that say the sa
 constexpr float late_memory = memory_of_noise * memory_of_noise * memory_of_noise * memory_of_noise;
 constexpr float most_over_single = 4.0F; /* noise between sweeps has at most this many times the variance that
                                             one picture shows: more is motion */
-
-/* Of 256 brightnesses: differences between sweeps that are never called motion, as rounding makes them. */
-constexpr float least_change = 0.3F;
 
 /* Those that differ by what noise explains: a tile that moved tells nothing of how alike noise is. */
 std::vector<TileDifference> quiet_tiles(std::span<const TileDifference> tiles,
@@ -71,87 +67,6 @@ void to_samples(std::span<const cl_ushort> means, uint32_t sample_bytes, std::ve
 
 } // namespace
 
-/* One component of all planes: how its tiles look, and what is known of it. */
-struct StackDenoiser::ComponentState {
-    ComponentState(CommandQueue &queue, const StackShape &shape, const Component &described, cl_int2 tiles)
-        : component(described), width(static_cast<cl_int>(described.width)),
-          height(static_cast<cl_int>(described.height)),
-          samples(static_cast<float>(tile_width() * tile_rows())),
-          tile_count(size_t{shape.planes} * static_cast<size_t>(tiles.s[0]) *
-                     static_cast<size_t>(tiles.s[1])),
-          means(queue.allocate(size_t{shape.planes} * described.width * described.height *
-                               (described.sample_bytes == 2 ? sizeof(cl_float) : sizeof(cl_ushort)))),
-          tiles(queue.allocate(tile_count * sizeof(TileDifference))),
-          curve(queue.allocate(sizeof(NoiseCurve))), rows(queue.allocate(shape.planes * sizeof(RowLayout))),
-          singles(shape.planes)
-    {
-        const Program program(queue.device(), "stack_denoise", options());
-        measure = program.kernel("measure_tiles");
-        judge = program.kernel("judge_tiles");
-        count = program.kernel("count_sweeps");
-        average = program.kernel("average_tiles");
-    }
-
-    uint32_t tile_width() const { return tile_pixels / component.subsampling * component.channels; }
-    uint32_t tile_rows() const { return tile_pixels / component.subsampling; }
-    uint32_t lanes() const { return tile_width() % 8 == 0 ? 8 : 4; }
-    /* As half of the planes show it at least. */
-    NoiseCurve single() const
-    {
-        NoiseCurve median{};
-        std::vector<float> values(singles.size());
-        for (size_t i = 0; i < median.size(); i++) {
-            std::transform(singles.begin(), singles.end(), values.begin(),
-                           [i](const NoiseCurve &c) { return c[i]; });
-            const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-            std::nth_element(values.begin(), middle, values.end());
-            median[i] = *middle;
-        }
-        return median;
-    }
-    float least() const { return component.sample_bytes == 2 ? least_change * 256.0F : least_change; }
-
-    /* The same samples of all planes, elsewhere; what comes in from outside is to be seen anew. */
-    void shift(CommandQueue &queue, int right, int down, uint32_t planes)
-    {
-        const auto bytes = means.getInfo<CL_MEM_SIZE>();
-        if (!spare()) {
-            spare = queue.allocate(bytes);
-            queue.commands().enqueueFillBuffer(spare, cl_ushort{0}, 0, bytes);
-        }
-        const auto divisor = static_cast<int>(component.subsampling);
-        const int x = right / divisor * static_cast<int>(component.channels), y = down / divisor;
-        const auto part = [](int of) { return static_cast<size_t>(std::max(of, 0)); };
-        const auto size = component.sample_bytes == 2 ? sizeof(cl_float) : sizeof(cl_ushort);
-        const size_t row = component.width * size, plane = row * component.height;
-        queue.commands().enqueueCopyBufferRect(
-            means, spare, {part(x) * size, part(y), 0}, {part(-x) * size, part(-y), 0},
-            {row - static_cast<size_t>(std::abs(x)) * size, part(height - std::abs(y)), planes}, row, plane,
-            row, plane);
-        std::swap(means, spare);
-    }
-
-    std::string options() const
-    {
-        return "-DSAMPLE_BYTES=" + std::to_string(component.sample_bytes) +
-               " -DLANES=" + std::to_string(lanes()) + " -DCHUNKS=" + std::to_string(tile_width() / lanes()) +
-               " -DROWS=" + std::to_string(tile_rows());
-    }
-
-    Component component;
-    cl_int width, height;
-    float samples; /* a tile */
-    size_t tile_count;
-    cl::Kernel measure, judge, count, average;
-    cl::Buffer means, tiles, curve, rows;
-    cl::Buffer spare;                       /* of the size of `means`, once these were shifted */
-    std::vector<TileDifference> host_tiles; /* of the plane that noise is learned from */
-    std::vector<RowLayout> host_rows;
-    std::vector<NoiseCurve> singles; /* as one picture of each plane shows it */
-    NoiseCurve noise{};              /* as it is believed */
-    float spread = 1.0F;
-};
-
 StackDenoiser::StackDenoiser(std::shared_ptr<Device> device, const StackShape &shape)
     : device_(std::move(device)), queue_(device_),
       shape_(shape), tiles_{{static_cast<cl_int>((shape.width + tile_pixels - 1) / tile_pixels),
@@ -167,7 +82,7 @@ StackDenoiser::StackDenoiser(std::shared_ptr<Device> device, const StackShape &s
         held_ = queue_.allocate(tiles);
         host_sweeps_.resize(tiles);
         for (const Component &component : components)
-            components_.push_back(std::make_shared<ComponentState>(queue_, shape_, component, tiles_));
+            components_.push_back(std::make_shared<DenoisedComponent>(queue_, shape_, component, tiles_));
         if (DenoiseStrips::suits(*device_, shape_))
             make_strips();
     });
@@ -246,8 +161,8 @@ void StackDenoiser::background(std::span<BackgroundPart> parts)
     translate_errors(*device_, [&] {
         for (size_t i = 0; i < parts.size(); i++) {
             const BackgroundPart &part = parts[i];
-            const ComponentState &of = *components_[part.component];
-            const size_t size = of.component.sample_bytes == 2 ? sizeof(cl_float) : sizeof(cl_ushort);
+            const DenoisedComponent &of = *components_[part.component];
+            const size_t size = of.mean_bytes();
             means[i].resize(size_t{part.width} * part.height * size / sizeof(cl_ushort));
             if (means[i].empty())
                 continue;
@@ -316,7 +231,7 @@ void StackDenoiser::upload(const StackView &view, std::span<std::byte> memory)
     if (!device_->works_in_place())
         queue_.commands().enqueueWriteBuffer(bytes, CL_FALSE, 0, view.memory.size(), view.memory.data());
     for (size_t i = 0; i < components_.size(); i++) {
-        ComponentState &part = *components_[i];
+        DenoisedComponent &part = *components_[i];
         const auto first = view.layout.begin() + static_cast<std::ptrdiff_t>(i * shape_.planes);
         std::vector<RowLayout> rows(first, first + shape_.planes);
         if (rows == part.host_rows)
@@ -339,8 +254,8 @@ void StackDenoiser::run_strips(const DenoiseParameters &parameters, uint64_t wan
     std::vector<NoiseBounds> bounds;
     for (const auto &part : components_)
         bounds.push_back({part->noise, part->spread, part->samples, sigmas_of_noise * parameters.strength});
-    strips_->run(bytes_.buffer(), moved_, held_, sweeps_, bounds, least_change, parameters.frames, wanted,
-                 absent);
+    strips_->run(bytes_.buffer(), moved_, held_, sweeps_, bounds, components_.front()->least_change(),
+                 parameters.frames, wanted, absent);
 }
 
 void StackDenoiser::run_tiles(const DenoiseParameters &parameters, uint64_t wanted, uint64_t absent)
@@ -381,7 +296,7 @@ void StackDenoiser::judge(const DenoiseParameters &parameters)
                                              part->noise.data());
         queue_.run(part->judge, size, part->tiles, sweeps_, part->curve, moved_, tiles_,
                    most_mean(part->samples, part->spread, sigmas),
-                   most_square(part->samples, part->spread, sigmas), part->least(), is_first);
+                   most_square(part->samples, part->spread, sigmas), part->least_change(), is_first);
         is_first = 0;
     }
 }
@@ -435,7 +350,7 @@ std::vector<uint8_t> StackDenoiser::learned_sweeps() const
  * tiles, as noise does not. */
 bool StackDenoiser::all_moved() const
 {
-    const ComponentState &first = *components_.front();
+    const DenoisedComponent &first = *components_.front();
     return spread_of_tiles(first.host_tiles, first.samples) > most_alike * first.samples;
 }
 
@@ -466,7 +381,7 @@ void StackDenoiser::learn_noise()
 void StackDenoiser::tell_noise_left(uint32_t frames)
 {
     const std::vector<uint8_t> sweeps = learned_sweeps();
-    const ComponentState &luma = *components_.front();
+    const DenoisedComponent &luma = *components_.front();
     kept_sweeps_ = std::min(kept_sweeps_ + 1, frames);
     const double share = 1.0 / kept_sweeps_;
     kept_variance_ = (1.0 - share) * (1.0 - share) * kept_variance_ + share * share;

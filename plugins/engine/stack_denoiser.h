@@ -8,6 +8,8 @@
 
 namespace dff {
 
+struct DenoisedComponent;
+
 struct DenoiseParameters {
     uint32_t frames = 8;   /* sweeps that are averaged at most: 1 to 255 */
     float strength = 1.0f; /* how much change passes for noise: 1 is six standard deviations */
@@ -63,8 +65,6 @@ public:
     StageTimes times() const { return times_; }
 
 private:
-    struct ComponentState;
-
     void shift_sweeps(int right, int down);
     void upload(const StackView &view, std::span<std::byte> memory);
     void begin(const StackView &view);
@@ -97,7 +97,7 @@ private:
     cl::Buffer moved_, sweeps_, held_;
     std::vector<uint8_t> host_sweeps_; /* sweeps_, as the last stack left it */
     bool holds_ = true;                /* held_ has anything but 0 in it */
-    std::vector<std::shared_ptr<ComponentState>> components_;
+    std::vector<std::shared_ptr<DenoisedComponent>> components_;
     std::optional<DenoiseStrips> strips_; /* on CPUs */
     PlaneTracker tracker_;
     bool has_means_ = false;

@@ -49,46 +49,16 @@
  *     focalstackalign ! queue ! dffdepth ! fakesink
  * ]| computes depth from sweeps whose planes differ in zoom by 3 percent.
  */
-#include "focalstack/focalstackalign.h"
+#include "focalstack/focalstackalign_private.h"
 
-#include "common/stack_clock.h"
 #include "common/stack_noise.h"
 #include "common/stack_place.h"
-#include "focalstack/alignment_calibration.h"
-#include "focalstack/alignment_statistics.h"
-#include "focalstack/bad_pixels.h"
-#include "focalstack/brightness_evener.h"
-#include "focalstack/focalstackalign_properties.h"
-#include "focalstack/partial_stack.h"
-#include "focalstack/plane_placing.h"
-#include "focalstack/scene_anchor.h"
-#include "focalstack/stack_aligner.h"
-#include "focalstack/stack_pictures.h"
 
-#include <optional>
 #include <stdexcept>
 
-GST_DEBUG_CATEGORY_STATIC(focalstackalign_debug);
-#define GST_CAT_DEFAULT focalstackalign_debug
+GST_DEBUG_CATEGORY(focalstackalign_debug);
 
 namespace {
-
-struct FocalStackAlignState {
-    /* Guarded by the sink pad's stream lock. */
-    std::optional<dff::StackPool> pool;
-    dff::StackClock clock;
-    bool told_untrusted = false;
-    bool told_blank = false;
-    std::optional<dff::AlignmentCalibration> calibration; /* with mode=calibration */
-    dff::BadPixels bad_pixels;
-    bool tells_place = false; /* somebody downstream averages stacks */
-    dff::SceneAnchor anchor;  /* if so */
-
-    /* Guarded by the object's lock. */
-    dff::AlignSettings settings;
-    dff::AlignmentStatistics statistics;
-    GstClockTime latency = 0;
-};
 
 constexpr guint property_stats = dff::align_properties_end;
 
@@ -99,127 +69,10 @@ GstStaticPadTemplate source_template =
 
 } // namespace
 
-struct _GstFocalStackAlign {
-    GstBaseTransform parent;
-    FocalStackAlignState *state;
-};
-
 G_DEFINE_FINAL_TYPE(GstFocalStackAlign, gst_focal_stack_align, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(focalstackalign, "focalstackalign", GST_RANK_NONE, GST_TYPE_FOCAL_STACK_ALIGN)
 
 namespace {
-
-class ObjectLock {
-public:
-    explicit ObjectLock(gpointer object) : object_(GST_OBJECT(object)) { GST_OBJECT_LOCK(object_); }
-    ~ObjectLock() { GST_OBJECT_UNLOCK(object_); }
-    ObjectLock(const ObjectLock &) = delete;
-    ObjectLock &operator=(const ObjectLock &) = delete;
-
-private:
-    GstObject *object_;
-};
-
-std::optional<dff::MotionModel> model_of(dff::MotionChoice choice)
-{
-    switch (choice) {
-    case dff::MotionChoice::Similarity:
-        return dff::MotionModel::Similarity;
-    case dff::MotionChoice::Homography:
-        return dff::MotionModel::Homography;
-    default:
-        return {};
-    }
-}
-
-std::vector<dff::PlaneAlignment> estimate(GstFocalStackAlign *self, const dff::StackPictures &pictures,
-                                          unsigned planes, dff::MotionChoice choice)
-{
-    try {
-        std::vector<cv::Mat> lumas;
-        for (unsigned z = 0; z < planes; z++)
-            lumas.push_back(pictures.component(z, 0));
-        return dff::align_stack(lumas, model_of(choice));
-    } catch (const cv::Exception &exception) {
-        GST_WARNING_OBJECT(self, "the stack is left as it is: %s", exception.what());
-        return std::vector<dff::PlaneAlignment>(planes, {.warp = {}, .trusted = false, .blank = true});
-    }
-}
-
-std::vector<dff::PlaneAlignment> find_alignments(GstFocalStackAlign *self, const dff::StackPictures &pictures,
-                                                 unsigned planes, const dff::AlignSettings &settings)
-{
-    const FocalStackAlignState &state = *self->state;
-    return state.calibration ? state.calibration->alignments(pictures.component(0, 0).size(), planes)
-                             : estimate(self, pictures, planes, settings.motion_model);
-}
-
-void place_planes(const dff::StackPictures &from, const dff::StackPictures &to,
-                  std::span<const dff::PlaneAlignment> alignments, bool even)
-{
-    for (unsigned i = 0; i < from.components(); i++) {
-        std::vector<cv::Mat> aligned;
-        for (unsigned z = 0; z < alignments.size(); z++) {
-            aligned.push_back(to.component(z, i));
-            if (dff::is_shown(alignments[z]))
-                dff::undo_warp(from.component(z, i), aligned[z], alignments[z].warp, from.step(i));
-        }
-        if (even)
-            dff::even_brightness(aligned, alignments, from.black(i), from.step(i));
-        dff::fill_hidden(aligned, alignments, from.step(i));
-    }
-}
-
-/* Planes that show their neighbour's picture. */
-void tell_repeated(GstBuffer *stack, std::span<const dff::PlaneAlignment> alignments)
-{
-    GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
-    for (std::size_t z = 0; meta && z < alignments.size(); z++)
-        if (!dff::is_shown(alignments[z]))
-            meta->repeated |= guint64{1} << z;
-}
-
-/* Each cause once, until the element is started anew. */
-void tell_of_trust(GstFocalStackAlign *self, std::span<const dff::PlaneAlignment> alignments)
-{
-    FocalStackAlignState &state = *self->state;
-    const std::string untrusted = dff::numbers_of(alignments, false),
-                      blank = dff::numbers_of(alignments, true);
-
-    GST_DEBUG_OBJECT(self, "planes not trusted: %s; without texture: %s",
-                     untrusted.empty() ? "none" : untrusted.c_str(), blank.empty() ? "none" : blank.c_str());
-    if (!untrusted.empty() && !state.told_untrusted) {
-        state.told_untrusted = true;
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("Planes %s of a stack of %zu do not fit the others by any shift, turn, zoom or perspective. "
-             "Nothing is "
-             "taken from them. Hold the camera still, or give the planes in the order of their focus.",
-             untrusted.c_str(), alignments.size()),
-            ("said once; the property stats tells the planes of every stack"));
-    }
-    if (!blank.empty() && !state.told_blank) {
-        state.told_blank = true;
-        GST_ELEMENT_WARNING(
-            self, STREAM, FAILED,
-            ("Planes %s of a stack of %zu show no texture by which they could be aligned. They are "
-             "moved with their neighbours.",
-             blank.c_str(), alignments.size()),
-            ("said once; the property stats tells the planes of every stack"));
-    }
-}
-
-/* The latency only ever grows, with some room, so that it is seldom announced. */
-void announce_latency(GstFocalStackAlign *self, GstClockTime measured)
-{
-    {
-        const ObjectLock lock(self);
-        if (measured <= self->state->latency)
-            return;
-        self->state->latency = measured + measured / 4;
-    }
-    gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
-}
 
 gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
 {
@@ -281,79 +134,6 @@ gboolean transform_meta(GstBaseTransform *, GstBuffer *, GstMeta *, GstBuffer *)
     return TRUE;
 }
 
-/* Before anything else: what lies at the same place of all planes would hold them fast. */
-void leave_out_bad_pixels(dff::BadPixels &known, GstBuffer *stack, dff::StackPictures &pictures,
-                          unsigned planes)
-{
-    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
-    const guint64 absent = meta ? meta->missing | meta->repeated : 0;
-    std::vector<cv::Mat> taken;
-    for (unsigned z = 0; z < planes; z++)
-        if (!(absent >> z & 1))
-            taken.push_back(pictures.component(z, 0));
-    known.look(taken);
-    pictures.leave_out(known.places());
-}
-
-/* The same planes, as they are to be placed for somebody who averages stacks; tells where this one lies. */
-std::vector<dff::PlaneAlignment> in_scene(GstFocalStackAlign *self, const dff::StackPictures &pictures,
-                                          std::vector<dff::PlaneAlignment> alignments, GstBuffer *output)
-{
-    FocalStackAlignState &state = *self->state;
-    if (!state.tells_place || state.calibration)
-        return alignments;
-    const auto middle = static_cast<unsigned>(dff::middle_plane(alignments.size()));
-    const dff::PlaneWarp rest = state.anchor.rest_of(pictures.component(middle, 0));
-    for (dff::PlaneAlignment &alignment : alignments)
-        alignment.warp = dff::PlaneWarp(alignment.warp.matrix() * rest.matrix());
-    const cv::Point shift = state.anchor.shift();
-    GST_DEBUG_OBJECT(self, "%d pixels right of anchor %u, %d down", shift.x, state.anchor.anchors(), shift.y);
-    dff::tell_stack_place(output, {state.anchor.anchors(), shift.x, shift.y});
-    return alignments;
-}
-
-GstFlowReturn transform(GstBaseTransform *base, GstBuffer *input, GstBuffer *output)
-{
-    GstFocalStackAlign *self = GST_FOCAL_STACK_ALIGN(base);
-    const GstFocalStackInfo &info = self->state->pool->info();
-    const gint64 start_us = g_get_monotonic_time();
-    g_autoptr(GError) error = nullptr;
-
-    const auto from = dff::StackPictures::map(info, input, GST_MAP_READ, &error);
-    const auto to = from ? dff::StackPictures::map(info, output, GST_MAP_WRITE, &error) : nullptr;
-    if (!to) {
-        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error->message), (nullptr));
-        return GST_FLOW_ERROR;
-    }
-    dff::AlignSettings settings;
-    {
-        const ObjectLock lock(self);
-        settings = self->state->settings;
-    }
-    std::vector<dff::PlaneAlignment> alignments;
-    try {
-        leave_out_bad_pixels(self->state->bad_pixels, input, *from, info.planes);
-        alignments = find_alignments(self, *from, info.planes, settings);
-        place_planes(*from, *to, in_scene(self, *from, alignments, output), settings.even_brightness);
-    } catch (const cv::Exception &exception) {
-        GST_ELEMENT_ERROR(self, STREAM, FAILED, ("The planes of the stack cannot be warped."),
-                          ("%s", exception.what()));
-        return GST_FLOW_ERROR;
-    } catch (const std::runtime_error &mismatch) {
-        GST_ELEMENT_ERROR(self, STREAM, WRONG_TYPE, ("%s", mismatch.what()), (nullptr));
-        return GST_FLOW_ERROR;
-    }
-    self->state->clock.stamp(output, info.frame);
-    tell_repeated(output, alignments);
-    tell_of_trust(self, alignments);
-    {
-        const ObjectLock lock(self);
-        self->state->statistics.add(std::move(alignments), self->state->bad_pixels.places().size());
-    }
-    announce_latency(self, static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND);
-    return GST_FLOW_OK;
-}
-
 gboolean sink_event(GstBaseTransform *base, GstEvent *event)
 {
     if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
@@ -382,7 +162,7 @@ gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *quer
     gboolean live = FALSE;
     GstClockTime least = 0, most = GST_CLOCK_TIME_NONE;
     gst_query_parse_latency(query, &live, &least, &most);
-    const ObjectLock lock(base);
+    const dff::ObjectLock lock(base);
     const GstClockTime own = GST_FOCAL_STACK_ALIGN(base)->state->latency;
     gst_query_set_latency(query, live, least + own, GST_CLOCK_TIME_IS_VALID(most) ? most + own : most);
     return TRUE;
@@ -390,10 +170,10 @@ gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *quer
 
 gboolean load_calibration(GstFocalStackAlign *self)
 {
-    FocalStackAlignState *state = self->state;
+    GstFocalStackAlignState *state = self->state;
     dff::AlignSettings settings;
     {
-        const ObjectLock lock(self);
+        const dff::ObjectLock lock(self);
         settings = state->settings;
     }
     state->calibration.reset();
@@ -410,11 +190,11 @@ gboolean load_calibration(GstFocalStackAlign *self)
 
 gboolean start(GstBaseTransform *base)
 {
-    FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(base)->state;
+    GstFocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(base)->state;
 
     if (!load_calibration(GST_FOCAL_STACK_ALIGN(base)))
         return FALSE;
-    const ObjectLock lock(base);
+    const dff::ObjectLock lock(base);
     state->clock = {};
     state->told_untrusted = state->told_blank = false;
     state->statistics = {};
@@ -432,15 +212,15 @@ gboolean stop(GstBaseTransform *base)
 
 void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
-    const ObjectLock lock(object);
+    const dff::ObjectLock lock(object);
     if (!dff::set_align_property(GST_FOCAL_STACK_ALIGN(object)->state->settings, id, value))
         G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
 }
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
-    const ObjectLock lock(object);
-    const FocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(object)->state;
+    const dff::ObjectLock lock(object);
+    const GstFocalStackAlignState *state = GST_FOCAL_STACK_ALIGN(object)->state;
     if (id == property_stats)
         g_value_take_boxed(value, state->statistics.to_structure());
     else if (!dff::get_align_property(state->settings, id, value))
@@ -507,10 +287,10 @@ static void gst_focal_stack_align_class_init(GstFocalStackAlignClass *klass)
     base_class->propose_allocation = propose_allocation;
     base_class->prepare_output_buffer = prepare_output_buffer;
     base_class->transform_meta = transform_meta;
-    base_class->transform = transform;
+    base_class->transform = gst_focal_stack_align_transform;
 }
 
 static void gst_focal_stack_align_init(GstFocalStackAlign *self)
 {
-    self->state = new FocalStackAlignState;
+    self->state = new GstFocalStackAlignState;
 }

@@ -39,54 +39,18 @@
  *     focalstackdenoise ! queue ! dffdepth ! fakesink
  * ]| computes depth of a noisy camera from the mean of up to 8 sweeps.
  */
-#include "focalstack/focalstackdenoise.h"
+#include "focalstack/focalstackdenoise_private.h"
 
-#include "common/stack_noise.h"
 #include "common/stack_place.h"
-#include "focalstack/bad_pixels.h"
-#include "focalstack/focalstackdenoise_properties.h"
-#include "focalstack/sweep_follower.h"
-#include "gstcl/compute_latency.h"
-#include "gstcl/device_context.h"
 #include "gstcl/engine_caps.h"
 #include "gstcl/engine_message.h"
-#include "gstcl/mapped_stack.h"
-#include "gstcl/start_progress.h"
 
-#include <algorithm>
 #include <cmath>
 #include <gst/dff/dff.h>
-#include <mutex>
-#include <optional>
-#include <stdexcept>
-#include <utility>
 
-GST_DEBUG_CATEGORY_STATIC(focalstackdenoise_debug);
-#define GST_CAT_DEFAULT focalstackdenoise_debug
+GST_DEBUG_CATEGORY(focalstackdenoise_debug);
 
 namespace {
-
-struct FocalStackDenoiseState {
-    explicit FocalStackDenoiseState(GstElement *element) : context(element) {}
-
-    dff::DeviceContext context;
-
-    /* The streaming thread's own. */
-    std::shared_ptr<dff::Device> device;
-    std::optional<GstFocalStackInfo> info;
-    std::unique_ptr<dff::StackDenoiser> denoiser; /* for info; empty until the first stack of these caps */
-    std::unique_ptr<dff::SweepFollower> follower; /* for info, while local-motion is wanted */
-    dff::BadPixels bad_pixels;
-    std::optional<dff::StackPlace> place; /* of the last stack, if focalstackalign told it */
-
-    std::mutex mutex; /* guards what follows; nothing is locked under it */
-    dff::DenoiseSettings settings;
-    double moved = 0.0; /* part of the last stack */
-    guint64 bad_pixel_count = 0;
-    dff::DenoiseReport report;
-    guint64 stacks = 0;
-    dff::ComputeLatency latency;
-};
 
 constexpr guint property_stats = dff::denoise_properties_end;
 
@@ -97,191 +61,15 @@ GstStaticPadTemplate source_template =
 
 } // namespace
 
-struct _GstFocalStackDenoise {
-    GstBaseTransform parent;
-    FocalStackDenoiseState *state;
-};
-
 G_DEFINE_FINAL_TYPE(GstFocalStackDenoise, gst_focal_stack_denoise, GST_TYPE_BASE_TRANSFORM)
 GST_ELEMENT_REGISTER_DEFINE(focalstackdenoise, "focalstackdenoise", GST_RANK_NONE,
                             GST_TYPE_FOCAL_STACK_DENOISE)
 
 namespace {
 
-/* Planes that do not show what they should. */
-guint64 absent_planes(GstBuffer *stack)
-{
-    const GstFocalStackMeta *meta = gst_buffer_get_focal_stack_meta(stack);
-    return meta ? meta->missing | meta->repeated : 0;
-}
-
-/* Maps for writing first: memory that somebody else holds is copied by that. */
-class WritableStack {
-public:
-    WritableStack(const GstFocalStackInfo &info, GstBuffer *buffer, const dff::Device &device)
-        : buffer_(buffer)
-    {
-        if (!gst_buffer_map(buffer, &map_, GST_MAP_READWRITE))
-            throw std::runtime_error("The stack's memory cannot be written");
-        try {
-            stack_.emplace(info, buffer, device);
-        } catch (...) {
-            gst_buffer_unmap(buffer_, &map_);
-            throw;
-        }
-    }
-    ~WritableStack()
-    {
-        stack_.reset();
-        gst_buffer_unmap(buffer_, &map_);
-    }
-    WritableStack(const WritableStack &) = delete;
-    WritableStack &operator=(const WritableStack &) = delete;
-
-    const dff::StackView &view() const { return stack_->view(); }
-    std::span<std::byte> memory() const { return {reinterpret_cast<std::byte *>(map_.data), map_.size}; }
-
-private:
-    GstBuffer *buffer_;
-    GstMapInfo map_{};
-    std::optional<dff::MappedStack> stack_;
-};
-
-/* The first stack of these caps waits for its kernels. */
-void ensure_denoiser(GstFocalStackDenoise *self)
-{
-    FocalStackDenoiseState &state = *self->state;
-    if (state.denoiser)
-        return;
-    state.denoiser = std::make_unique<dff::StackDenoiser>(state.device, dff::stack_shape(*state.info));
-    GST_INFO_OBJECT(self, "denoising %ux%u stacks of %u planes on %s",
-                    GST_VIDEO_INFO_WIDTH(&state.info->frame), GST_VIDEO_INFO_HEIGHT(&state.info->frame),
-                    state.info->planes, state.device->name().c_str());
-}
-
-void account(GstFocalStackDenoise *self, dff::DenoiseReport report, GstClockTime compute_time, bool is_first)
-{
-    FocalStackDenoiseState &state = *self->state;
-    GST_DEBUG_OBJECT(self, "%.1f sweeps averaged, in %" GST_TIME_FORMAT, report.mean_sweeps,
-                     GST_TIME_ARGS(compute_time));
-    bool is_slower = false;
-    {
-        const std::lock_guard lock(state.mutex);
-        state.report = std::move(report);
-        state.moved = state.follower ? state.follower->moved() : 0.0;
-        state.bad_pixel_count = state.bad_pixels.places().size();
-        state.stacks++;
-        is_slower = state.latency.add(compute_time, is_first);
-    }
-    if (is_slower)
-        gst_element_post_message(GST_ELEMENT(self), gst_message_new_latency(GST_OBJECT(self)));
-}
-
-/* What the user wants of this stack, and what the one before told of noise. */
-struct Wishes {
-    dff::DenoiseSettings settings;
-    dff::DenoiseReport report;
-};
-
-Wishes wishes(FocalStackDenoiseState &state)
-{
-    const std::lock_guard lock(state.mutex);
-    return {state.settings, state.report};
-}
-
-/* All planes are known to be of one sweep, one after the other. */
-bool is_one_sweep(const dff::StackView &view)
-{
-    const auto &planes = view.identities;
-    return std::all_of(planes.begin(), planes.end(), [&](const auto &plane) {
-        return !plane || !planes.front() || plane->sweep == planes.front()->sweep;
-    });
-}
-
-/* Before anything else: what is sharp in all planes has no depth. */
-void leave_out_bad_pixels(dff::BadPixels &known, const WritableStack &stack, guint64 absent)
-{
-    const auto pictures = dff::pictures_of(stack.view(), stack.memory());
-    const auto components = stack.view().shape.components();
-    std::vector<cv::Mat> taken;
-    for (size_t z = 0; z < pictures.size(); z++)
-        if (!(absent >> z & 1))
-            taken.push_back(pictures[z].front());
-    known.look(taken);
-    for (const auto &plane : pictures)
-        for (size_t c = 0; c < plane.size(); c++)
-            dff::repair_pixels(plane[c], known.places(), static_cast<int>(components[c].subsampling));
-}
-
-/* Nothing is followed in sweeps of few planes, through planes that do not show what they should, nor in
- * rolling windows, whose planes are of two sweeps; what stands behind is learned anew after them. */
-void denoise_stack(FocalStackDenoiseState &state, const WritableStack &stack, guint64 absent)
-{
-    const Wishes wanted = wishes(state);
-    const dff::StackView &view = stack.view();
-    const bool has_few = view.shape.planes < dff::SweepFollower::fewest_planes;
-    if (!wanted.settings.local_motion || has_few || absent != 0 || !is_one_sweep(view)) {
-        state.follower.reset();
-        state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters);
-        return;
-    }
-    if (!state.follower)
-        state.follower = std::make_unique<dff::SweepFollower>(view.shape);
-    const std::span<const uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
-    state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters, held);
-    state.follower->follow(view, stack.memory(), *state.denoiser);
-}
-
-/* What is known goes along with a camera that shakes. Motion is followed where it rests. */
-void follow_place(FocalStackDenoiseState &state, const std::optional<dff::StackPlace> &place)
-{
-    const auto before = std::exchange(state.place, place);
-    if (!place || !before || place->anchor != before->anchor || *place == *before)
-        return;
-    state.denoiser->shift(place->right - before->right, place->down - before->down);
-    state.follower.reset();
-}
-
-void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
-{
-    FocalStackDenoiseState &state = *self->state;
-    const gint64 start_us = g_get_monotonic_time();
-    const bool is_first = !state.denoiser;
-    std::optional<dff::StartProgress> progress;
-    if (is_first)
-        progress.emplace(GST_ELEMENT(self));
-    ensure_denoiser(self);
-    follow_place(state, dff::stack_place(buffer));
-    const guint64 absent = absent_planes(buffer);
-    {
-        const WritableStack stack(*state.info, buffer, *state.device);
-        leave_out_bad_pixels(state.bad_pixels, stack, absent);
-        denoise_stack(state, stack, absent);
-    }
-    dff::DenoiseReport report = state.denoiser->report();
-    /* Planes that are noisier than the others would pass for sharper ones. */
-    dff::tell_stack_noise(buffer, absent == 0 ? report.left : std::nullopt);
-    account(self, std::move(report),
-            static_cast<GstClockTime>(g_get_monotonic_time() - start_us) * GST_USECOND, is_first);
-}
-
-GstFlowReturn transform_ip(GstBaseTransform *base, GstBuffer *buffer)
-{
-    GstFocalStackDenoise *self = GST_FOCAL_STACK_DENOISE(base);
-    try {
-        denoise(self, buffer);
-        return GST_FLOW_OK;
-    } catch (const dff::EngineError &error) {
-        dff::post_engine_error(GST_ELEMENT(self), error);
-    } catch (const std::exception &error) {
-        GST_ELEMENT_ERROR(self, STREAM, FORMAT, ("%s", error.what()), (nullptr));
-    }
-    return GST_FLOW_ERROR;
-}
-
 gboolean set_caps(GstBaseTransform *base, GstCaps *caps, GstCaps *)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     GstFocalStackInfo info;
 
     if (!gst_focal_stack_info_from_caps(&info, caps))
@@ -309,7 +97,7 @@ gboolean propose_allocation(GstBaseTransform *base, GstQuery *decide_query, GstQ
 
 gboolean sink_event(GstBaseTransform *base, GstEvent *event)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP && state.denoiser) {
         state.denoiser->forget();
         state.follower.reset();
@@ -321,7 +109,7 @@ gboolean sink_event(GstBaseTransform *base, GstEvent *event)
 
 gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *query)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     if (state.context.answer(query))
         return TRUE;
     const gboolean answered =
@@ -340,7 +128,7 @@ gboolean query(GstBaseTransform *base, GstPadDirection direction, GstQuery *quer
 
 gboolean start(GstBaseTransform *base)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     std::string wish;
     {
         const std::lock_guard lock(state.mutex);
@@ -362,7 +150,7 @@ gboolean start(GstBaseTransform *base)
 
 gboolean stop(GstBaseTransform *base)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(base)->state;
     state.denoiser.reset();
     state.follower.reset();
     state.info.reset();
@@ -387,7 +175,7 @@ void set_noise(GstStructure *stats, const dff::DenoiseReport &report)
     gst_structure_take_value(stats, "noise", &curve);
 }
 
-GstStructure *statistics(FocalStackDenoiseState &state)
+GstStructure *statistics(GstFocalStackDenoiseState &state)
 {
     const std::lock_guard lock(state.mutex);
     GstStructure *stats =
@@ -402,7 +190,7 @@ GstStructure *statistics(FocalStackDenoiseState &state)
 
 void set_property(GObject *object, guint id, const GValue *value, GParamSpec *spec)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
     bool is_known = false, is_idle = false;
     {
         const std::lock_guard lock(state.mutex);
@@ -416,7 +204,7 @@ void set_property(GObject *object, guint id, const GValue *value, GParamSpec *sp
 
 void get_property(GObject *object, guint id, GValue *value, GParamSpec *spec)
 {
-    FocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
+    GstFocalStackDenoiseState &state = *GST_FOCAL_STACK_DENOISE(object)->state;
     if (id == property_stats) {
         g_value_take_boxed(value, statistics(state));
         return;
@@ -481,12 +269,12 @@ static void gst_focal_stack_denoise_class_init(GstFocalStackDenoiseClass *klass)
     base_class->sink_event = sink_event;
     base_class->query = query;
     base_class->propose_allocation = propose_allocation;
-    base_class->transform_ip = transform_ip;
+    base_class->transform_ip = gst_focal_stack_denoise_transform_ip;
     base_class->transform_ip_on_passthrough = FALSE;
 }
 
 static void gst_focal_stack_denoise_init(GstFocalStackDenoise *self)
 {
-    self->state = new FocalStackDenoiseState(GST_ELEMENT(self));
+    self->state = new GstFocalStackDenoiseState(GST_ELEMENT(self));
     gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
 }

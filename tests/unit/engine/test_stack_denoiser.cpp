@@ -2,89 +2,16 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/luma.h"
 #include "engine/stack_denoiser.h"
-#include "test_stack.h"
+#include "noisy_stack.h"
+#include "twin_denoiser.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <gtest/gtest.h>
-#include <random>
 
 using namespace dff;
 
 namespace {
-
-unsigned sample_of(const TestStack &stack, const Component &component, const RowLayout &rows, unsigned x,
-                   unsigned y)
-{
-    unsigned value = 0;
-    std::memcpy(&value,
-                stack.memory.data() + rows.offset + rows.stride * y + size_t{x} * component.sample_bytes,
-                component.sample_bytes);
-    return value;
-}
-
-void set_sample(TestStack &stack, const Component &component, const RowLayout &rows, unsigned x, unsigned y,
-                double value)
-{
-    const double most = component.sample_bytes == 2 ? 65535.0 : 255.0;
-    const auto rounded = static_cast<uint16_t>(std::lround(std::clamp(value, 0.0, most)));
-    std::memcpy(stack.memory.data() + rows.offset + rows.stride * y + size_t{x} * component.sample_bytes,
-                &rounded, component.sample_bytes);
-}
-
-template <typename Work> void for_each_sample(const StackShape &shape, const Work &work)
-{
-    const auto components = shape.components();
-    for (size_t c = 0; c < components.size(); c++)
-        for (unsigned z = 0; z < shape.planes; z++)
-            for (unsigned y = 0; y < components[c].height; y++)
-                for (unsigned x = 0; x < components[c].width; x++)
-                    work(c, components[c], z, x, y);
-}
-
-/* `clean` with normal noise of a standard deviation in units of which white has 256. */
-TestStack noisy(const TestStack &clean, double sigma, unsigned seed)
-{
-    TestStack stack = clean;
-    std::mt19937 random(seed);
-    std::normal_distribution<double> noise(0.0, sigma);
-    for_each_sample(clean.shape,
-                    [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
-                        const RowLayout &rows = clean.layout[c * clean.shape.planes + z];
-                        const double unit = component.sample_bytes == 2 ? 256.0 : 1.0;
-                        set_sample(stack, component, rows, x, y,
-                                   sample_of(clean, component, rows, x, y) + unit * noise(random));
-                    });
-    return stack;
-}
-
-/* Soft pictures, which leave room for noise at both ends. */
-TestStack smooth_stack(const StackShape &shape, double phase = 0.0)
-{
-    TestStack stack(shape);
-    for_each_sample(shape, [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
-        const double value = 128 + 50 * std::sin(0.11 * x + 0.07 * y + z + phase);
-        set_sample(stack, component, stack.layout[c * shape.planes + z], x, y,
-                   component.sample_bytes == 2 ? 256 * value : value);
-    });
-    return stack;
-}
-
-double mean_square(const TestStack &a, const TestStack &b)
-{
-    double sum = 0.0, count = 0.0;
-    for_each_sample(a.shape, [&](size_t c, const Component &component, unsigned z, unsigned x, unsigned y) {
-        const RowLayout &rows = a.layout[c * a.shape.planes + z];
-        const double unit = component.sample_bytes == 2 ? 256.0 : 1.0;
-        const double difference = (static_cast<double>(sample_of(a, component, rows, x, y)) -
-                                   static_cast<double>(sample_of(b, component, rows, x, y))) /
-                                  unit;
-        sum += difference * difference;
-        count++;
-    });
-    return sum / count;
-}
 
 void denoise(StackDenoiser &denoiser, TestStack &stack, const DenoiseParameters &parameters = {},
              uint64_t absent = 0)
@@ -92,130 +19,6 @@ void denoise(StackDenoiser &denoiser, TestStack &stack, const DenoiseParameters 
     const StackView view = stack.view();
     denoiser.denoise(view, stack.memory, absent, parameters);
 }
-
-/* stack_denoise.cl in plain words: what it does to one component, in double. */
-class Twin {
-public:
-    Twin(const StackShape &shape, size_t index)
-        : shape_(shape), index_(index), component_(shape.components()[index]),
-          width_(8 / component_.subsampling * component_.channels), rows_(8 / component_.subsampling),
-          across_((shape.width + 7) / 8), down_((shape.height + 7) / 8),
-          means_(size_t{shape.planes} * component_.width * component_.height)
-    {
-    }
-
-    size_t tiles() const { return size_t{across_} * down_; }
-
-    std::vector<TileDifference> measure(const TestStack &stack, unsigned z) const
-    {
-        std::vector<TileDifference> tiles;
-        for (unsigned ty = 0; ty < down_; ty++)
-            for (unsigned tx = 0; tx < across_; tx++)
-                tiles.push_back(difference(stack, z, std::min(tx * width_, component_.width - width_),
-                                           std::min(ty * rows_, component_.height - rows_)));
-        return tiles;
-    }
-
-    float samples() const { return static_cast<float>(width_ * rows_); }
-
-    bool moved(const TileDifference &tile, const NoiseCurve &curve, unsigned sweeps, float spread) const
-    {
-        const float white = component_.sample_bytes == 2 ? 65536.0F : 256.0F;
-        const float least = 0.3F * white / 256.0F;
-        const float place = std::clamp(tile.brightness * 16.0F / white - 0.5F, 0.0F, 15.0F);
-        const auto i = std::min(static_cast<size_t>(place), size_t{14});
-        const float variance = std::lerp(curve[i], curve[i + 1], place - static_cast<float>(i)) *
-                               (1.0F + 1.0F / static_cast<float>(std::max(sweeps, 1U)));
-        const float part = 2 * spread / (9 * samples()), root = 1 - part + 5 * std::sqrt(part);
-        return std::fabs(tile.mean) > 6 * std::sqrt(variance * spread / samples()) + least ||
-               tile.square > variance * root * root * root + least;
-    }
-
-    void average(TestStack &stack, unsigned z, const std::vector<uint8_t> &sweeps)
-    {
-        const RowLayout &rows = stack.layout[index_ * shape_.planes + z];
-        for (unsigned y = 0; y < component_.height; y++)
-            for (unsigned x = 0; x < component_.width; x++) {
-                double &mean = mean_at(x, y, z);
-                mean += (sample_of(stack, component_, rows, x, y) - mean) /
-                        sweeps[(y / rows_) * across_ + x / width_];
-                set_sample(stack, component_, rows, x, y, mean);
-            }
-    }
-
-    unsigned across() const { return across_; }
-    unsigned down() const { return down_; }
-
-private:
-    double &mean_at(unsigned x, unsigned y, unsigned z)
-    {
-        return means_[(size_t{z} * component_.height + y) * component_.width + x];
-    }
-
-    TileDifference difference(const TestStack &stack, unsigned z, unsigned x0, unsigned y0) const
-    {
-        double sum = 0.0, squares = 0.0, brightness = 0.0;
-        for (unsigned y = y0; y < y0 + rows_; y++)
-            for (unsigned x = x0; x < x0 + width_; x++) {
-                const double m = const_cast<Twin *>(this)->mean_at(x, y, z);
-                const double d =
-                    sample_of(stack, component_, stack.layout[index_ * shape_.planes + z], x, y) - m;
-                sum += d;
-                squares += d * d;
-                brightness += m;
-            }
-        const double n = width_ * rows_;
-        return {static_cast<float>(sum / n), static_cast<float>(squares / n),
-                static_cast<float>(brightness / n), 0};
-    }
-
-    StackShape shape_;
-    size_t index_;
-    Component component_;
-    unsigned width_, rows_, across_, down_;
-    std::vector<double> means_;
-};
-
-/* The whole of it for stacks of one component, with the denoiser's own word for the noise. */
-class TwinOfDenoiser {
-public:
-    explicit TwinOfDenoiser(const StackShape &shape)
-        : shape_(shape), twin_(shape, 0), sweeps_(shape.planes, std::vector<uint8_t>(twin_.tiles(), 0))
-    {
-    }
-
-    void denoise(TestStack &stack, const NoiseCurve &curve, float spread, unsigned frames)
-    {
-        std::vector<bool> moved(twin_.tiles());
-        for (unsigned z = 0; z < shape_.planes; z++) {
-            const auto tiles = twin_.measure(stack, z);
-            for (size_t i = 0; i < tiles.size(); i++)
-                moved[i] = moved[i] || twin_.moved(tiles[i], curve, sweeps_[z][i], spread);
-        }
-        for (unsigned z = 0; z < shape_.planes; z++) {
-            count(sweeps_[z], moved, frames);
-            twin_.average(stack, z, sweeps_[z]);
-        }
-    }
-
-private:
-    void count(std::vector<uint8_t> &sweeps, const std::vector<bool> &moved, unsigned frames) const
-    {
-        const int across = static_cast<int>(twin_.across()), down = static_cast<int>(twin_.down());
-        for (int i = 0; i < across * down; i++) {
-            bool near = false;
-            for (int y = std::max(i / across - 1, 0); y <= std::min(i / across + 1, down - 1); y++)
-                for (int x = std::max(i % across - 1, 0); x <= std::min(i % across + 1, across - 1); x++)
-                    near = near || moved[static_cast<size_t>(y) * twin_.across() + static_cast<size_t>(x)];
-            auto &k = sweeps[static_cast<size_t>(i)];
-            k = near ? 1 : static_cast<uint8_t>(std::min<unsigned>(k + 1U, frames));
-        }
-    }
-
-    StackShape shape_;
-    Twin twin_;
-    std::vector<std::vector<uint8_t>> sweeps_;
-};
 
 struct Case {
     PixelFormat format;
@@ -237,7 +40,7 @@ void expect_agreement(const StackShape &shape, KernelStyle style)
 {
     const TestStack clean = smooth_stack(shape);
     StackDenoiser denoiser(device_with(style), shape);
-    TwinOfDenoiser twin(shape);
+    twin::Denoiser twin(shape);
     for (unsigned t = 0; t < 5; t++) {
         TestStack stack = noisy(clean, 4.0, t);
         if (t >= 2)
