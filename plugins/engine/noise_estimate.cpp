@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace dff {
 
@@ -33,9 +34,11 @@ void NoiseEstimate::run(const StackBuffer &stack)
     const auto step = static_cast<cl_int>(std::max(std::sqrt(pixels / looked_at), 1.0));
     queue_.begin_stage("noise");
     const cl_ulong changed = stack.changed_planes();
-    queue_.run(plane_noise_, {1, shape_.planes}, stack.bytes(), stack.layout(),
-               colour_channels(shape_.format), changed, histograms_, sigmas_,
-               static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), step);
+    unmeasured_ |= changed;
+    if (!stack.noise())
+        queue_.run(plane_noise_, {1, shape_.planes}, stack.bytes(), stack.layout(),
+                   colour_channels(shape_.format), std::exchange(unmeasured_, 0), histograms_, sigmas_,
+                   static_cast<cl_int>(shape_.width), static_cast<cl_int>(shape_.height), step);
     queue_.run(judge_noise_, {1}, sigmas_, noise_, static_cast<cl_int>(shape_.planes), scale_,
                cl_int{std::popcount(changed) < static_cast<int>(shape_.planes)},
                stack.noise().value_or(-1.0F));

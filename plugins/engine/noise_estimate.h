@@ -14,7 +14,8 @@ public:
     /* `scale` of the volume, which the pre-blur goes by. */
     NoiseEstimate(CommandQueue &queue, const StackShape &shape, cl_int scale);
 
-    /* Where most planes are the last stack's, the pre-blur stays while it is nearly right. */
+    /* Where most planes are the last stack's, the pre-blur stays while it is nearly right. What is told with
+     * the stack is not measured. */
     void run(const StackBuffer &stack);
 
     const cl::Buffer &noise() const { return noise_; } /* one Noise of low_picture.cl */
@@ -33,6 +34,7 @@ private:
     cl_int scale_;
     cl::Kernel plane_noise_, judge_noise_;
     cl::Buffer histograms_, sigmas_, noise_;
+    cl_ulong unmeasured_ = 0; /* planes that came since while their noise was told */
 };
 
 } // namespace dff

@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors
  *
  * Each kernel of method=volume against its twin, fed with what the device's stage before it gave. */
+#include "noisy_stack.h"
 #include "volume_stages.h"
 
 #include <random>
@@ -38,6 +39,39 @@ TEST(NoiseEstimate, what_is_told_is_believed)
     EXPECT_FLOAT_EQ(sigma(2.5F), 2.5F);
     EXPECT_FLOAT_EQ(sigma(0.0F), 0.0F);
     EXPECT_FLOAT_EQ(sigma(std::nullopt), alone);
+}
+
+/* Of a rolling window, whose planes come one by one. */
+TEST(NoiseEstimate, planes_that_came_while_noise_was_told_are_measured_when_it_is_not)
+{
+    const StackShape shape{PixelFormat::Gray8, 160, 120, 3};
+    CommandQueue queue(Device::open(""));
+    StackBuffer buffer(queue, shape);
+    NoiseEstimate rolling(queue, shape, 2), fresh(queue, shape, 2);
+    const auto sigma = [&](NoiseEstimate &estimate, const StackBuffer &stack) {
+        estimate.run(stack);
+        NoiseEstimate::Noise noise{};
+        queue.commands().enqueueReadBuffer(estimate.noise(), CL_TRUE, 0, sizeof noise, &noise);
+        return noise.sigma;
+    };
+    TestStack stack = noisy(smooth_stack(shape), 12.0, 1);
+    StackView view = stack.view();
+    view.identities = {PlaneIdentity{0, 0}, PlaneIdentity{0, 1}, PlaneIdentity{0, 2}};
+    for (unsigned z = 0; z < shape.planes; z++) {
+        const TestStack later = noisy(smooth_stack(shape), 3.0, 2 + z);
+        std::copy_n(later.memory.begin() + static_cast<std::ptrdiff_t>(later.layout[z].offset),
+                    later.layout[z].stride * shape.height,
+                    stack.memory.begin() + static_cast<std::ptrdiff_t>(stack.layout[z].offset));
+        view.identities[z] = PlaneIdentity{1, z};
+        view.noise = z + 1 < shape.planes ? std::optional(4.0F) : std::nullopt;
+        buffer.assign(view);
+        EXPECT_EQ(buffer.changed_planes(), z == 0 ? uint64_t{7} : uint64_t{1} << z);
+        if (view.noise)
+            EXPECT_FLOAT_EQ(sigma(rolling, buffer), 4.0F);
+        else
+            EXPECT_FLOAT_EQ(sigma(rolling, buffer), sigma(fresh, buffer.as_new()));
+        buffer.remember(view);
+    }
 }
 
 /* A dark bag, a desk that has texture everywhere, and a bright blank wall, which is a little brighter from
