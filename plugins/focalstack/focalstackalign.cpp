@@ -41,7 +41,8 @@
  * With mode=calibration the warps come from a file instead, for a rig whose lens always breathes the same; it
  * costs less, and scenes without texture do no harm. The file holds what `stats` told of a textured scene.
  *
- * A stack without times gets those of its caps' frame rate.
+ * A stack without times gets those of its caps' frame rate. One with the flag GAP, which shows nothing, keeps
+ * it and its planes where they are.
  *
  * ## Example pipeline
  * |[
@@ -293,4 +294,5 @@ static void gst_focal_stack_align_class_init(GstFocalStackAlignClass *klass)
 static void gst_focal_stack_align_init(GstFocalStackAlign *self)
 {
     self->state = new GstFocalStackAlignState;
+    gst_base_transform_set_gap_aware(GST_BASE_TRANSFORM(self), TRUE);
 }

@@ -164,6 +164,14 @@ GstFlowReturn gst_focal_stack_align_transform(GstBaseTransform *base, GstBuffer 
         const dff::ObjectLock lock(self);
         settings = self->state->settings;
     }
+    if (GST_BUFFER_FLAG_IS_SET(input, GST_BUFFER_FLAG_GAP)) { /* of which nothing can be learned */
+        place_planes(
+            *from, *to,
+            std::vector<dff::PlaneAlignment>(info.planes, {.warp = {}, .trusted = true, .blank = false}),
+            false);
+        self->state->clock.stamp(output, info.frame);
+        return GST_FLOW_OK;
+    }
     std::vector<dff::PlaneAlignment> alignments;
     try {
         leave_out_bad_pixels(self->state->bad_pixels, input, *from, info.planes);

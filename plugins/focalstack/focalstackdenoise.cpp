@@ -31,7 +31,7 @@
  * A hand that shakes moves everything: with focalstackalign before it, which tells where each stack lies, the
  * same places of the scene are averaged; nothing is followed by `local-motion` from a sweep to another then
  * that lies 2 pixels away or more. The stack is changed in place where nobody else holds it. Each format of
- * stacks will do, rolling windows too.
+ * stacks will do, rolling windows too; one with the flag GAP, which shows nothing, passes as it is.
  *
  * ## Example pipeline
  * |[
@@ -277,4 +277,5 @@ static void gst_focal_stack_denoise_init(GstFocalStackDenoise *self)
 {
     self->state = new GstFocalStackDenoiseState(GST_ELEMENT(self));
     gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+    gst_base_transform_set_gap_aware(GST_BASE_TRANSFORM(self), TRUE);
 }

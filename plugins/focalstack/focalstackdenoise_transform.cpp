@@ -175,6 +175,8 @@ void denoise(GstFocalStackDenoise *self, GstBuffer *buffer)
 GstFlowReturn gst_focal_stack_denoise_transform_ip(GstBaseTransform *base, GstBuffer *buffer)
 {
     GstFocalStackDenoise *self = GST_FOCAL_STACK_DENOISE(base);
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) /* of which nothing can be learned */
+        return GST_FLOW_OK;
     try {
         denoise(self, buffer);
         return GST_FLOW_OK;

@@ -105,6 +105,31 @@ TEST_F(FocalStackAlign, a_plane_that_shows_another_scene_is_said_to_repeat_its_n
     EXPECT_EQ(gst_buffer_get_focal_stack_meta(aligned.get())->repeated, 1U | 1U << (planes - 1));
 }
 
+/* Of a gap there is no picture: nobody is warned of it, and what is known of the scene stays. */
+TEST_F(FocalStackAlign, a_gap_stays_one_and_the_next_goes_on)
+{
+    const ShakenStack shaken(shaking);
+    start(stack_info("I420", shaken.size), true);
+    ASSERT_TRUE(align(new_stack(info_, shaken.planes)));
+    GstBuffer *stack =
+        new_stack(info_, std::vector<cv::Mat>(planes, cv::Mat(shaken.size, CV_8U, cv::Scalar(3))));
+    GST_BUFFER_FLAG_SET(stack, GST_BUFFER_FLAG_GAP);
+    const Owned<GstBuffer> before(gst_buffer_copy_deep(stack));
+    const Owned<GstBuffer> gap = align(stack);
+    EXPECT_TRUE(GST_BUFFER_FLAG_IS_SET(gap.get(), GST_BUFFER_FLAG_GAP));
+    GstMapInfo map;
+    gst_buffer_map(before.get(), &map, GST_MAP_READ);
+    EXPECT_EQ(gst_buffer_memcmp(gap.get(), 0, map.data, map.size), 0);
+    gst_buffer_unmap(before.get(), &map);
+    EXPECT_FALSE(dff::stack_place(gap.get()));
+
+    const Owned<GstBuffer> next = align(new_stack(info_, shaken.planes));
+    EXPECT_FALSE(GST_BUFFER_FLAG_IS_SET(next.get(), GST_BUFFER_FLAG_GAP));
+    EXPECT_EQ(dff::stack_place(next.get()), (dff::StackPlace{1, 0, 0}));
+    EXPECT_EQ(count_messages(bus_, GST_MESSAGE_WARNING), 0U);
+    EXPECT_EQ(number_of(stats().get(), "stacks"), 2U);
+}
+
 TEST_F(FocalStackAlign, stack_is_one_memory_of_its_own_with_slack)
 {
     const ShakenStack shaken(shaking);

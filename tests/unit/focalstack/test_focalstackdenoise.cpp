@@ -201,6 +201,28 @@ TEST_F(FocalStackDenoise, a_lost_plane_stays_as_it_is)
     EXPECT_TRUE(std::equal(before.begin() + plane, before.begin() + 2 * plane, after.begin() + plane));
 }
 
+/* Of a gap there is no picture: dffdepth makes no depth of it. */
+TEST_F(FocalStackDenoise, a_gap_stays_one_and_the_next_goes_on)
+{
+    for (const bool local_motion : {false, true}) {
+        start("GRAY8", 6);
+        g_object_set(harness_->element, "local-motion", static_cast<gboolean>(local_motion), nullptr);
+        for (unsigned seed = 0; seed < 7; seed++)
+            denoised(100, seed);
+        GstBuffer *gap = new_stack(info_, next_++, 0, 1);
+        GST_BUFFER_FLAG_SET(gap, GST_BUFFER_FLAG_GAP);
+        const std::vector<guint8> before = bytes_of(gap);
+        gst_harness_push(harness_.get(), gap);
+        const Owned<GstBuffer> passed(gst_harness_pull(harness_.get()));
+        EXPECT_TRUE(GST_BUFFER_FLAG_IS_SET(passed.get(), GST_BUFFER_FLAG_GAP));
+        EXPECT_FALSE(dff::stack_noise(passed.get()));
+        EXPECT_EQ(bytes_of(passed.get()), before);
+        const Owned<GstBuffer> next = denoised(100, 7);
+        EXPECT_FALSE(GST_BUFFER_FLAG_IS_SET(next.get(), GST_BUFFER_FLAG_GAP));
+        EXPECT_LT(noise_of(bytes_of(next.get()), 100), 25.0 / 8 * 1.2);
+    }
+}
+
 /* Nothing moves, so that all is as without it. */
 TEST_F(FocalStackDenoise, local_motion_goes_on_after_a_lost_plane)
 {
