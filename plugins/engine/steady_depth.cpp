@@ -2,6 +2,8 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "engine/steady_depth.h"
 
+#include "engine/cell_sums.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -14,8 +16,10 @@ namespace dff {
 namespace {
 
 constexpr uint32_t cell_pixels = 4, tile_cells = 2;
-constexpr uint8_t most_stacks = 16;      /* that are averaged */
-constexpr uint8_t enough_jumps = 4;      /* stacks that a pixel must be elsewhere before it is believed */
+constexpr uint8_t most_stacks = 16; /* that are averaged */
+constexpr uint8_t enough_jumps = 4; /* stacks that a pixel must be elsewhere before it is believed */
+constexpr uint32_t settled = 32;    /* stacks after which noise is learned from one in `seldom` */
+constexpr uint32_t seldom = 4;
 constexpr float sigmas = 6.0F;           /* that a tile may be off by noise */
 constexpr float most_over_single = 4.0F; /* times the variance that one picture shows */
 constexpr float least_change = 0.05F;    /* mean square that is never called motion, white is 256 */
@@ -64,6 +68,17 @@ void in_halves(uint32_t rows, const std::function<void(uint32_t, uint32_t)> &wor
 
 } // namespace
 
+/* What a thread needs to take a row of cells. */
+struct SteadyDepth::Room {
+    explicit Room(const SteadyDepth &of)
+        : columns(size_t{of.cells_across_} * cell_pixels * of.component_.channels), plain(of.cells_across_)
+    {
+    }
+
+    std::vector<uint32_t> columns;
+    CellSums<cell_pixels> plain;
+};
+
 SteadyDepth::SteadyDepth(const StackShape &shape)
     : shape_(shape), component_(shape.components().front()), cells_across_(shape.width / cell_pixels),
       cells_down_(shape.height / cell_pixels), tiles_across_(cells_across_ / tile_cells),
@@ -76,42 +91,60 @@ SteadyDepth::SteadyDepth(const StackShape &shape)
 {
 }
 
-/* Rows of cells of plane z. */
-void SteadyDepth::take_cells(const StackView &stack, uint32_t z, uint32_t first_row, uint32_t end)
+/* A row of cells of plane z. */
+void SteadyDepth::take_cells(const StackView &stack, uint32_t z, uint32_t y, Room &room)
 {
     const RowLayout &rows = stack.layout[z];
-    std::vector<uint32_t> columns(size_t{cells_across_} * cell_pixels * component_.channels);
-    for (uint32_t y = first_row; y < end; y++) {
-        const std::byte *first = stack.memory.data() + rows.offset + size_t{y} * cell_pixels * rows.stride;
-        const std::span<float> cells(cells_.data() + (size_t{z} * cells_down_ + y) * cells_across_,
-                                     cells_across_);
-        if (component_.sample_bytes == 2)
-            sum_cells<uint16_t>(first, rows.stride, component_, columns, cells);
-        else
-            sum_cells<uint8_t>(first, rows.stride, component_, columns, cells);
+    const std::byte *first = stack.memory.data() + rows.offset + size_t{y} * cell_pixels * rows.stride;
+    const std::span<float> cells(cells_.data() + (size_t{z} * cells_down_ + y) * cells_across_,
+                                 cells_across_);
+    if (component_.sample_bytes == 2)
+        sum_cells<uint16_t>(first, rows.stride, component_, room.columns, cells);
+    else if (component_.channels > 1)
+        sum_cells<uint8_t>(first, rows.stride, component_, room.columns, cells);
+    else {
+        constexpr float scale = 1.0F / (cell_pixels * cell_pixels);
+        const std::span<const int32_t> sums = room.plain.of(first, rows.stride);
+        std::transform(sums.begin(), sums.end(), cells.begin(),
+                       [](int32_t sum) { return static_cast<float>(sum) * scale; });
+    }
+}
+
+/* Adds to a row of tiles how much a row of their cells differs from the mean of the stacks before. */
+void SteadyDepth::add_differences(size_t first_cell, std::span<float> squares,
+                                  std::span<float> brightness) const
+{
+    const float share = 1.0F / samples_;
+    const float *cells = cells_.data() + first_cell, *means = means_.data() + first_cell;
+    for (size_t tx = 0; tx < squares.size(); tx++) {
+        float square = squares[tx], light = brightness[tx];
+        for (size_t i = tx * tile_cells; i < (tx + 1) * tile_cells; i++) {
+            const float difference = cells[i] - means[i];
+            square += difference * difference * share;
+            light += means[i] * share;
+        }
+        squares[tx] = square;
+        brightness[tx] = light;
     }
 }
 
 /* How each tile of these rows of them differs from the mean of the stacks before, over all planes. */
 void SteadyDepth::compare(const StackView &stack, uint32_t first_row, uint32_t end)
 {
-    const float share = 1.0F / samples_;
-    std::fill(tiles_.begin() + static_cast<std::ptrdiff_t>(size_t{first_row} * tiles_across_),
-              tiles_.begin() + static_cast<std::ptrdiff_t>(size_t{end} * tiles_across_), TileDifference{});
-    for (uint32_t z = 0; z < shape_.planes; z++) {
-        take_cells(stack, z, first_row * tile_cells, end * tile_cells);
+    Room room(*this);
+    std::vector<float> squares(size_t{end - first_row} * tiles_across_), brightness(squares.size());
+    for (uint32_t z = 0; z < shape_.planes; z++)
         for (uint32_t y = first_row * tile_cells; y < end * tile_cells; y++) {
-            const size_t row = (size_t{z} * cells_down_ + y) * cells_across_;
-            TileDifference *tiles = tiles_.data() + size_t{y / tile_cells} * tiles_across_;
-            for (uint32_t tx = 0; tx < tiles_across_; tx++)
-                for (uint32_t i = 0; i < tile_cells; i++) {
-                    const float mean = means_[row + tx * tile_cells + i];
-                    const float difference = cells_[row + tx * tile_cells + i] - mean;
-                    tiles[tx].square += difference * difference * share;
-                    tiles[tx].brightness += mean * share;
-                }
+            const size_t tiles = size_t{y / tile_cells - first_row} * tiles_across_;
+            take_cells(stack, z, y, room);
+            add_differences((size_t{z} * cells_down_ + y) * cells_across_,
+                            std::span(squares).subspan(tiles, tiles_across_),
+                            std::span(brightness).subspan(tiles, tiles_across_));
         }
-    }
+    const auto first = tiles_.begin() + static_cast<std::ptrdiff_t>(size_t{first_row} * tiles_across_);
+    std::transform(squares.begin(), squares.end(), brightness.begin(), first, [](float square, float light) {
+        return TileDifference{0.0F, square, light, 0.0F};
+    });
 }
 
 /* By the tiles that differ least, but no more than one picture shows: else it is motion. */
@@ -134,21 +167,24 @@ void SteadyDepth::learn_noise(const StackView &stack)
 void SteadyDepth::judge()
 {
     const float unit = component_.sample_bytes == 2 ? 256.0F : 1.0F;
+    const float most = 1.0F + sigmas * std::sqrt(2.0F / samples_);
     std::vector<uint8_t> changed(tiles_.size());
     for (size_t i = 0; i < tiles_.size(); i++) {
         const float variance = variance_at(noise_, tiles_[i].brightness / unit) *
                                (1.0F + 1.0F / std::max(static_cast<float>(sweeps_[i]), 1.0F));
-        changed[i] = tiles_[i].square >
-                     variance * (1.0F + sigmas * std::sqrt(2.0F / samples_)) + least_change * unit * unit;
+        changed[i] = tiles_[i].square > variance * most + least_change * unit * unit;
     }
-    for (uint32_t ty = 0; ty < tiles_down_; ty++)
-        for (uint32_t tx = 0; tx < tiles_across_; tx++) {
-            uint8_t any = is_new_;
-            for (uint32_t y = std::max(ty, 1U) - 1; y < std::min(ty + 2, tiles_down_); y++)
-                for (uint32_t x = std::max(tx, 1U) - 1; x < std::min(tx + 2, tiles_across_); x++)
-                    any |= changed[size_t{y} * tiles_across_ + x];
-            moved_[size_t{ty} * tiles_across_ + tx] = any;
-        }
+    /* And the tiles around: those above and below, then those of them beside. */
+    std::vector<uint8_t> near(size_t{tiles_across_} + 2);
+    for (uint32_t ty = 0; ty < tiles_down_; ty++) {
+        const uint8_t *here = changed.data() + size_t{ty} * tiles_across_;
+        const uint8_t *above = ty > 0 ? here - tiles_across_ : here;
+        const uint8_t *below = ty + 1 < tiles_down_ ? here + tiles_across_ : here;
+        for (size_t tx = 0; tx < tiles_across_; tx++)
+            near[tx + 1] = above[tx] | here[tx] | below[tx];
+        for (size_t tx = 0; tx < tiles_across_; tx++)
+            moved_[size_t{ty} * tiles_across_ + tx] = is_new_ | near[tx] | near[tx + 1] | near[tx + 2];
+    }
 }
 
 /* The means of these rows of tiles go on with this stack, or begin anew. */
@@ -238,11 +274,13 @@ void SteadyDepth::average_row(uint16_t *depth, uint32_t y, const DepthJumps &jum
 void SteadyDepth::steady(const StackView &stack, const DepthRows &depth, const DepthJumps &jumps)
 {
     in_halves(tiles_down_, [&](uint32_t first, uint32_t end) { compare(stack, first, end); });
-    if (!is_new_)
-        learn_noise(stack);
-    else
+    if (is_new_) {
+        compared_ = 0;
         for (uint32_t z = 0; z < shape_.planes; z++)
             singles_[z] = noise_of_plane(stack, 0, z);
+    } else if (compared_ < settled || compared_ % seldom == 0)
+        learn_noise(stack);
+    compared_++;
     judge();
     is_new_ = false;
     in_halves(tiles_down_, [&](uint32_t first, uint32_t end) { follow(first, end); });

@@ -33,7 +33,10 @@ public:
     void forget() { is_new_ = true; }
 
 private:
-    void take_cells(const StackView &stack, uint32_t z, uint32_t first_row, uint32_t end);
+    struct Room;
+
+    void take_cells(const StackView &stack, uint32_t z, uint32_t y, Room &room);
+    void add_differences(size_t first_cell, std::span<float> squares, std::span<float> brightness) const;
     void compare(const StackView &stack, uint32_t first_row, uint32_t end);
     void learn_noise(const StackView &stack);
     void judge();
@@ -57,6 +60,7 @@ private:
     std::vector<uint8_t> jumped_;     /* stacks that a pixel has been in another plane */
     std::vector<NoiseCurve> singles_; /* as one picture of each plane shows it */
     uint32_t looked_at_ = 0;          /* plane whose picture tells of noise next */
+    uint32_t compared_ = 0;           /* stacks of this scene */
     bool is_new_ = true;
 };
 

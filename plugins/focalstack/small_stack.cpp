@@ -2,6 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #include "focalstack/small_stack.h"
 
+#include "engine/cell_sums.h"
 #include "focalstack/in_parallel.h"
 
 #include <algorithm>
@@ -18,37 +19,15 @@ int factor_of(const StackShape &shape)
     return factor;
 }
 
-/* Sums of neighbours: out[i] = in[2 i] + in[2 i + 1]. */
-template <typename In, typename Out> void add_pairs(const In *in, size_t count, Out *out)
+/* Means over cells of side x side samples of 8 bits of a picture of one channel. */
+template <unsigned side> void take_plain_means(const cv::Mat &picture, float scale, cv::Mat1f &means)
 {
-    for (size_t i = 0; i < count; i++)
-        out[i] = static_cast<Out>(Out{in[2 * i]} + Out{in[2 * i + 1]});
-}
-
-/* Means over cells of side x side samples of 8 bits of a picture of one channel, in steps that the compiler
- * makes vectors of. */
-template <int side> void take_plain_means(const cv::Mat &picture, float scale, cv::Mat1f &means)
-{
-    static_assert(side == 2 || side == 4);
-    const auto count = static_cast<size_t>(means.cols);
-    std::vector<uint16_t> columns(count * side), pairs(count * side / 2), cells(count);
+    CellSums<side> cells(static_cast<size_t>(means.cols));
     for (int y = 0; y < means.rows; y++) {
-        const uint8_t *rows[side];
-        for (int i = 0; i < side; i++)
-            rows[i] = picture.ptr<uint8_t>(y * side + i);
-        for (size_t x = 0; x < columns.size(); x++) {
-            unsigned sum = 0;
-            for (int i = 0; i < side; i++)
-                sum += rows[i][x];
-            columns[x] = static_cast<uint16_t>(sum);
-        }
-        add_pairs(columns.data(), pairs.size(), pairs.data());
-        if (side == 4)
-            add_pairs(pairs.data(), cells.size(), cells.data());
-        const uint16_t *sums = side == 4 ? cells.data() : pairs.data();
-        float *out = means[y];
-        for (size_t x = 0; x < count; x++)
-            out[x] = static_cast<float>(sums[x]) * scale;
+        const auto sums =
+            cells.of(picture.ptr<std::byte>(y * static_cast<int>(side)), static_cast<size_t>(picture.step));
+        std::transform(sums.begin(), sums.end(), means[y],
+                       [scale](int32_t sum) { return static_cast<float>(sum) * scale; });
     }
 }
 
