@@ -339,14 +339,48 @@ INLINE uchar16 soft_samples(const Source *source, int x, int y, ushort16 positio
     return convert_uchar16(sum / weights + 0.5f);
 }
 
+INLINE void add_weighted(const Source *source, int z, int x, int y, float16 weight, float16 *sum, float16 *weights)
+{
+    if (z < 0 || z >= source->planes)
+        return;
+    *sum += weight * convert_float16(*(__global const lanes8 *)samples_at(source, z, x, y));
+    *weights += weight;
+}
+
+/* The same where all positions lie f planes behind plane `floor_u`, f from 0 to 1. Weights are those over that plane's:
+ *
+ *     w(k) = 2^(-b (k^2 - 2 k f)) = w(1)^k c^((k^2 - k) / 2) behind it, likewise before it, with c = 2^(-2 b)
+ */
+#define SOFT_LOG2 (LOG2_E / (2.0f * SOFT_PLANES * SOFT_PLANES))
+#define SOFT_ROOT 0.24935221f /* 2^-SOFT_LOG2 */
+#define SOFT_STEP (SOFT_ROOT * SOFT_ROOT)
+
+INLINE uchar16 soft_samples_between(const Source *source, int x, int y, ushort16 position, int floor_u)
+{
+    const float16 f = convert_float16(position & (ushort)(UNIT - 1)) * (1.0f / UNIT);
+    const float16 before = power_of_2(f * (-2.0f * SOFT_LOG2)) * SOFT_ROOT;
+    const float16 behind = power_of_2((f - 1.0f) * (2.0f * SOFT_LOG2)) * (1.0f / SOFT_ROOT);
+    const float16 second = behind * behind * SOFT_STEP;
+    float16 sum = 0.0f, weights = 0.0f;
+    add_weighted(source, floor_u - 2, x, y, before * before * SOFT_STEP, &sum, &weights);
+    add_weighted(source, floor_u - 1, x, y, before, &sum, &weights);
+    add_weighted(source, floor_u, x, y, 1.0f, &sum, &weights);
+    add_weighted(source, floor_u + 1, x, y, behind, &sum, &weights);
+    add_weighted(source, floor_u + 2, x, y, second, &sum, &weights);
+    add_weighted(source, floor_u + 3, x, y, second * behind * (SOFT_STEP * SOFT_STEP), &sum, &weights);
+    return convert_uchar16(sum / weights + 0.5f);
+}
+
 /* The softened mean, or without noise the linear one, where some positions may be unknown. */
 INLINE uchar16 any_samples(const Source *source, int x, int y, ushort16 position, int soft)
 {
     const short16 none = position == (ushort16)NO_POSITION;
-    const int2 range = planes_between(least_of(position),
-                                      most_of(position & ~as_ushort16(none)), source->planes);
+    const ushort least = least_of(position), most = most_of(position & ~as_ushort16(none));
+    const int2 range = planes_between(least, most, source->planes);
     uchar16 value;
-    if (soft) {
+    if (soft && least / UNIT == most / UNIT) {
+        value = soft_samples_between(source, x, y, position, range.x);
+    } else if (soft) {
         value = soft_samples(source, x, y, position, range.x, range.y);
     } else {
         const ushort16 steep = steepened(position, source->steepness);

@@ -116,7 +116,11 @@ double twin_sample(const std::vector<double> &planes, double u, AifComposer::Ble
 class AifFormats
     : public testing::TestWithParam<std::tuple<PixelFormat, AifComposer::Blend, KernelStyle, bool>> {
 protected:
-    static void expect_twin(const TestStack &stack, Kind kind);
+    static void expect_twin(const TestStack &stack, Kind kind, const std::vector<uint16_t> &depth);
+    static void expect_twin(const TestStack &stack, Kind kind)
+    {
+        expect_twin(stack, kind, test_depth(stack.shape, std::get<bool>(GetParam())));
+    }
 };
 
 TEST_P(AifFormats, agrees_with_its_twin)
@@ -129,10 +133,22 @@ TEST_P(AifFormats, without_noise_the_nearer_plane_counts_more)
     expect_twin(quiet_stack({std::get<PixelFormat>(GetParam()), 67, 65, 7}), Kind::Quiet);
 }
 
-void AifFormats::expect_twin(const TestStack &stack, Kind kind)
+/* Between the same two planes along each row, from the first plane's place to the last one's. */
+TEST_P(AifFormats, depth_that_falls_from_row_to_row_agrees_too)
+{
+    const TestStack stack({std::get<PixelFormat>(GetParam()), 67, 65, 7});
+    std::vector<uint16_t> depth;
+    for (unsigned y = 0; y < 65; y++)
+        for (unsigned x = 0; x < 67; x++)
+            depth.push_back(std::get<bool>(GetParam()) && (x + y) % 29 == 0
+                                ? uint16_t{0}
+                                : static_cast<uint16_t>(1 + 65531 * y / 64 + x % 3));
+    expect_twin(stack, Kind::Noisy, depth);
+}
+
+void AifFormats::expect_twin(const TestStack &stack, Kind kind, const std::vector<uint16_t> &depth)
 {
     const auto [format, blend, style, holes] = GetParam();
-    const std::vector<uint16_t> depth = test_depth(stack.shape, holes);
     const std::vector<uint16_t> taken_at = softened(depth, stack.shape);
     const std::vector<RowLayout> layout = packed_layout({format, 67, 65, 1});
     std::vector<std::byte> picture(stack.memory.size() / 7);
