@@ -11,7 +11,7 @@ import numpy as np
 from gathering import Sweeps
 from sweeps import flat, write_pages
 
-from dff_stack import depths, exif, order, sweep
+from dff_stack import depths, order, sweep, tiff
 from dff_stack.progress import Progress
 
 
@@ -58,7 +58,7 @@ class Ome(Sweeps):
         for order in '<>':
             for is_big in (False, True):
                 write_bare_tiff(self.photos / 'a.ome.tif', order, is_big, OME.format(planes=f'<!--{"y" * 70000}-->' + planes, channels=1))
-                self.assertTrue(exif.description_of(self.photos / 'a.ome.tif').endswith('</OME>'), (order, is_big))
+                self.assertTrue(tiff.description_of(self.photos / 'a.ome.tif').endswith('</OME>'), (order, is_big))
 
     def test_what_a_damaged_file_promises_is_not_believed(self):
         path = self.photos / 'a.tif'
@@ -68,10 +68,10 @@ class Ome(Sweeps):
                 whole = path.read_bytes()
                 for size in range(1, len(whole)):
                     path.write_bytes(whole[:size])
-                    self.assertTrue('a description'.startswith(exif.description_of(path)), (order, is_big, size))
+                    self.assertTrue('a description'.startswith(tiff.description_of(path)), (order, is_big, size))
                 for at in range(4, len(whole)):
                     path.write_bytes(whole[:at] + b'\xff' * min(8, len(whole) - at) + whole[at + 8:])
-                    self.assertLess(len(exif.description_of(path)), len(whole), (order, is_big, at))
+                    self.assertLess(len(tiff.description_of(path)), len(whole), (order, is_big, at))
 
     def test_no_planes_at_all_are_refused(self):
         write_pages(self.photos / 'a.tif', [flat(0), flat(50)], OME.replace('SizeZ="3"', 'SizeZ="0"').format(planes='', channels=1))

@@ -219,6 +219,21 @@ def write_dng(path, width, height):
     path.write_bytes(head.ljust(2048, b'\0') + pixels.tobytes())
 
 
+def plain_pages(pages, head):
+    """A TIFF file (head HHI) or BigTIFF file (HHHQ) of grey pages with the table of each behind its pixels, as libtiff leaves them."""
+    is_big = head == 'HHHQ'
+    place, count, entry = ('Q', 'Q', 'HHQQ') if is_big else ('I', 'H', 'HHII')
+    data = bytearray(struct.pack('<2sH', b'II', 43 if is_big else 42) + (struct.pack('<HH', 8, 0) if is_big else b''))
+    for pixels in pages:
+        height, width = pixels.shape[:2]
+        link, start = len(data), len(data) + struct.calcsize('<' + place)
+        end = start + pixels.nbytes
+        data += struct.pack('<' + place, end) + pixels.tobytes()
+        tags = {256: width, 257: height, 258: 8, 259: 1, 262: 1, 273: start, 277: 1, 278: height, 279: pixels.nbytes}
+        data += struct.pack('<' + count, len(tags)) + b''.join(struct.pack('<' + entry, tag, 4, 1, value) for tag, value in tags.items())
+    return bytes(data) + bytes(struct.calcsize('<' + place))
+
+
 class Refusing(Sweeps):
     def setUp(self):
         super().setUp()
@@ -243,6 +258,16 @@ class Refusing(Sweeps):
             with self.subTest(ending):
                 self.assert_refused(path.name)
             path.unlink()
+
+    def test_a_page_that_is_cut_off(self):
+        path = self.photos / 'a.tif'
+        for kind in ('HHI', 'HHHQ'):
+            whole = plain_pages([texture(number) for number in range(4)], kind)
+            path.write_bytes(whole)
+            self.assertEqual(len(self.gather(path)), 4)
+            for part in (0.2, 0.3, 0.45, 0.55, 0.8, 0.95):
+                path.write_bytes(whole[:int(part * len(whole))])
+                self.assert_refused('a.tif cannot be read: ')
 
     def test_a_pipe_that_nobody_writes_into(self):
         os.mkfifo(self.photos / '5.jpg')

@@ -6,7 +6,6 @@ It writes EXIF in full into JPEG files, whose block is a small TIFF file (EXIF 2
 takes the block's tables as its own (TIFF 6.0, 2; a table is an IFD), PNG the block as it is, in chunks before those of its
 pixels, after which many do not look (PNG, third edition, 11.3.3 and 11.3.4).
 """
-import mmap
 import pathlib
 import re
 import struct
@@ -18,11 +17,9 @@ import OpenImageIO as oiio
 from dff_stack import scratch
 from dff_stack.pictures import text_of
 
-DESCRIPTION = 270
 POINTERS = (0x8769, 0x8825)  # of a file's first table: to those of EXIF and GPS
 BYTES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # of a value of each type
 LONG = 4
-TABLES = {42: ('I', 'H', 'HHII'), 43: ('Q', 'Q', 'HHQQ')}  # of TIFF and BigTIFF: a place, how many entries, and an entry
 MOST_TEXT = 10000  # bytes in a JPEG file; of a block's 65,533, since the same texts in XML may be five times as long
 
 
@@ -118,30 +115,6 @@ def end_of(file):
     """Goes there; tables begin at even places."""
     at = file.seek(0, 2)
     return at + file.write(bytes(at % 2))
-
-
-def description_of(path):
-    """What the first page of a TIFF or BigTIFF file says of itself, in full: OpenImageIO gives 65,536 bytes. Nothing of other files."""
-    with open(path, 'rb') as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        try:
-            return description_in(data)
-        except struct.error:  # the file ends before what it promises
-            return ''
-
-
-def description_in(data):
-    order = {b'II': '<', b'MM': '>'}.get(data[:2])
-    version = struct.unpack(order + 'H', data[2:4])[0] if order else 0
-    if version not in TABLES:
-        return ''
-    place_as, count_as, entry_as = (struct.Struct(order + form) for form in TABLES[version])
-    place, = place_as.unpack(data[place_as.size:2 * place_as.size])
-    entries = place + count_as.size
-    count, = count_as.unpack(data[place:entries])
-    for tag, _, length, place in entry_as.iter_unpack(data[entries:entries + count * entry_as.size]):
-        if tag == DESCRIPTION and length > 8:  # shorter ones are not where the entry says, but in it
-            return data[place:place + length].rstrip(b'\0').decode(errors='replace')
-    return ''
 
 
 def beyond_ascii(spec):

@@ -9,7 +9,7 @@ import math
 import re
 import xml.etree.ElementTree
 
-from dff_stack import Unusable, exif
+from dff_stack import Unusable, tiff
 
 MOST_PLANES = 1000 * 1000  # more are not believed
 MICROMETRES = {'nm': 1e-3, 'µm': 1.0, 'um': 1.0, 'mm': 1e3, 'cm': 1e4, 'm': 1e6}
@@ -95,7 +95,7 @@ def own_data(root, pixels, file_name):
 
 def ome_of(picture):
     """What the file of this page says, or None where it is no OME-TIFF."""
-    text = exif.description_of(picture.path)
+    text = tiff.description_of(picture.path)
     if '<OME' not in text:
         return None
     try:

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import OpenImageIO as oiio
 
-from dff_stack import Unusable, one_line
+from dff_stack import Unusable, one_line, tiff
 
 RAW_ENDINGS = ('.arw', '.cr2', '.cr3', '.crw', '.dng', '.nef', '.nrw', '.orf', '.pef', '.raf', '.raw', '.rw2', '.srw')
 ENDINGS = ('.png', '.jpg', '.jpeg', '.tif', '.tiff', '.exr', *RAW_ENDINGS)
@@ -134,6 +134,8 @@ def pages_of(path):
     image.close()
     if path.suffix.lower() in RAW_ENDINGS:
         specs = specs[:1]
+    elif tiff.lacks_pages(path):
+        raise Unusable(f'{path} cannot be read: it ends before its last page')
     specs = [(page, spec) for page, spec in specs if not is_thumbnail(spec, specs[0][1])]
     return [Picture(path, spec, page, len(specs)) for page, spec in specs]
 
