@@ -4,7 +4,7 @@
 """Runs the pipelines printed in the given files and folders, as printed, and speaks TAP; why one fails is on stderr.
 
     *.gst           one pipeline a file, below its comments
-    *.md            every gst-launch-1.0 command of the code blocks
+    *.md            every gst-launch-1.0 command of the code blocks; not of docs/elements, which are made of doc comments
     *.c, *.cpp      every |[ gst-launch-1.0 ... ]| of the doc comments
 
 Each must end by itself with status 0, and neither warn nor complain. They run one after the other, in the order of the files,
@@ -48,7 +48,7 @@ def commands_of(path):
 def files_of(path):
     if path.is_file():
         return [path]
-    return sorted(file for file in path.rglob('*') if file.suffix in ('.gst', '.md', '.c', '.cpp'))
+    return sorted(file for file in path.rglob('*') if file.suffix in ('.gst', '.md', '.c', '.cpp') and file.parent.name != 'elements')
 
 
 def has_element(name):
