@@ -133,8 +133,9 @@ class Batch(Folders):
         while time.monotonic() < end and not list(self.results.glob('stack0.tif')):
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=SECONDS)
+        _, errors = process.communicate(timeout=SECONDS)
         self.assertEqual(process.returncode, 130)
+        self.assertRegex(errors.splitlines()[-1], 'stopped; what is done stays, and the same command goes on$')
         time.sleep(0.5)
         self.assertFalse([path for path in self.results.iterdir() if 'unfinished' in path.name])
         finished = self.run_batch()

@@ -126,6 +126,7 @@ def main(arguments_=None):
         print(f'\ndff-stack: {printable(error) or "there is not enough memory: see --memory"}', file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print('\ndff-stack: stopped; nothing was written', file=sys.stderr, flush=True)
+        left = 'what is done stays, and the same command goes on' if options.batch else 'nothing was written'
+        print(f'\ndff-stack: stopped; {left}', file=sys.stderr, flush=True)
         os._exit(130)  # without waiting for the elements, which may be in the middle of a stack
     return 0
