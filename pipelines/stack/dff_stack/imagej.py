@@ -3,7 +3,7 @@
 """ImageJ's TIFF: the distance of its slices, and how large a pixel is, from the lines of its description (its FileInfo and TiffEncoder)."""
 import math
 
-from dff_stack import Unusable, exif
+from dff_stack import Unusable, tiff
 
 MICROMETRES = {'nm': 1e-3, 'micron': 1.0, 'um': 1.0, 'µm': 1.0, r'\u00b5m': 1.0, 'mm': 1e3, 'cm': 1e4, 'm': 1e6, 'inch': 25400.0}
 AXES = ('slices', 'channels', 'frames')
@@ -29,7 +29,7 @@ def place_pages(pictures, say):
 
 
 def lines_of(picture):
-    text = exif.description_of(picture.path)
+    text = tiff.description_of(picture.path)
     return dict(line.split('=', 1) for line in text.splitlines() if '=' in line) if text.startswith('ImageJ=') else {}
 
 
