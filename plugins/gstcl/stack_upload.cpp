@@ -3,7 +3,7 @@
 #include "gstcl/stack_upload.h"
 
 #include <gst/dff/dff.h>
-#include <gst/dff/gstfocalstackmeta-private.h>
+#include <gst/dff/private/gstfocalstackshared.h>
 
 namespace dff {
 

@@ -6,7 +6,7 @@
  */
 #include "gstdepthmeta.h"
 
-#include "gstdffbytes.h"
+#include "private/gstdffbytes.h"
 
 #include <gst/video/video.h>
 #include <math.h>
@@ -30,6 +30,15 @@ GType gst_depth_unit_get_type(void)
     return type;
 }
 
+/**
+ * gst_depth_meta_api_get_type: (skip)
+ *
+ * The type of the meta's API, as #GST_DEPTH_META_API_TYPE.
+ *
+ * Returns: the type
+ *
+ * Since: 0.1
+ */
 GType gst_depth_meta_api_get_type(void)
 {
     static GType type;
@@ -184,6 +193,15 @@ static const GstMetaInfo *register_meta(void)
 }
 #endif
 
+/**
+ * gst_depth_meta_get_info: (skip)
+ *
+ * What GStreamer knows of the meta, as #GST_DEPTH_META_INFO.
+ *
+ * Returns: (transfer none): a description that lives as long as the program
+ *
+ * Since: 0.1
+ */
 const GstMetaInfo *gst_depth_meta_get_info(void)
 {
     static const GstMetaInfo *info;
@@ -198,6 +216,8 @@ const GstMetaInfo *gst_depth_meta_get_info(void)
  * @info: a #GstDepthInfo
  *
  * Sets every field to "unknown": unit index, no range, no intrinsics.
+ *
+ * Since: 0.1
  */
 void gst_depth_info_init(GstDepthInfo *info)
 {
@@ -209,8 +229,12 @@ void gst_depth_info_init(GstDepthInfo *info)
  * @buffer: a writable #GstBuffer
  * @info: what its pixels mean
  *
+ * Says with a buffer what the pixels of a depth map mean.
+ *
  * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
  * writable
+ *
+ * Since: 0.1
  */
 GstDepthMeta *gst_buffer_add_depth_meta(GstBuffer *buffer, const GstDepthInfo *info)
 {
@@ -227,7 +251,11 @@ GstDepthMeta *gst_buffer_add_depth_meta(GstBuffer *buffer, const GstDepthInfo *i
  * gst_buffer_get_depth_meta:
  * @buffer: a #GstBuffer
  *
+ * Asks a buffer what the pixels of a depth map mean.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL if @buffer has none
+ *
+ * Since: 0.1
  */
 GstDepthMeta *gst_buffer_get_depth_meta(GstBuffer *buffer)
 {
@@ -238,6 +266,10 @@ GstDepthMeta *gst_buffer_get_depth_meta(GstBuffer *buffer)
  * gst_depth_meta_get_depth:
  * @meta: a #GstDepthMeta
  * @info: (out caller-allocates): where the facts go
+ *
+ * Copies what the meta says, as gst_buffer_add_depth_meta() takes it.
+ *
+ * Since: 0.1
  */
 void gst_depth_meta_get_depth(const GstDepthMeta *meta, GstDepthInfo *info)
 {
@@ -272,6 +304,8 @@ static const gchar *unit_nick(GstDepthUnit unit)
  *
  * Writes the fields depth-unit, depth-near and depth-far, which raw transforms and payloaders keep. near and
  * far stand there only where they are known; older ones are removed.
+ *
+ * Since: 0.1
  */
 void gst_depth_info_to_caps(const GstDepthInfo *info, GstCaps *caps)
 {
@@ -291,7 +325,11 @@ void gst_depth_info_to_caps(const GstDepthInfo *info, GstCaps *caps)
  * @info: (inout): gets the unit, near and far; the rest is left alone
  * @caps: fixed caps of a depth stream
  *
+ * Reads the fields that gst_depth_info_to_caps() wrote.
+ *
  * Returns: %FALSE if @caps do not say the unit
+ *
+ * Since: 0.1
  */
 gboolean gst_depth_info_from_caps(GstDepthInfo *info, const GstCaps *caps)
 {
@@ -312,7 +350,11 @@ gboolean gst_depth_info_from_caps(GstDepthInfo *info, const GstCaps *caps)
  * gst_depth_meta_to_bytes:
  * @meta: a #GstDepthMeta
  *
+ * Packs a meta for files and networks.
+ *
  * Returns: (transfer full): the meta as bytes with a version, for files and networks
+ *
+ * Since: 0.1
  */
 GBytes *gst_depth_meta_to_bytes(const GstDepthMeta *meta)
 {
@@ -360,8 +402,12 @@ static gboolean read_depth(GstDepthInfo *info, GstByteReader *reader)
  * @bytes: what gst_depth_meta_to_bytes() gave
  * @error: where an error goes
  *
+ * Gives a buffer a meta that was packed. The bytes may come from anybody.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
  * unknown version
+ *
+ * Since: 0.1
  */
 GstDepthMeta *gst_buffer_add_depth_meta_from_bytes(GstBuffer *buffer, GBytes *bytes, GError **error)
 {

@@ -21,6 +21,10 @@ typedef struct _GstDepthMeta GstDepthMeta;
  * @GST_DEPTH_UNIT_DIOPTRE: object vergence, 1 / metres
  * @GST_DEPTH_UNIT_MILLIMETRE: distance from the entrance pupil (the Z16 convention)
  * @GST_DEPTH_UNIT_MICROMETRE: stage position
+ *
+ * What the numbers of a depth map count.
+ *
+ * Since: 0.1
  */
 typedef enum {
     GST_DEPTH_UNIT_AUTO,
@@ -47,6 +51,8 @@ typedef enum {
  * @sweep: number of the sweep it was taken in
  *
  * What the pixels of a depth map mean. Pixel 0 is "no value"; a smaller pixel is nearer in every unit.
+ *
+ * Since: 0.1
  */
 struct _GstDepthInfo {
     GstDepthUnit unit;
@@ -83,6 +89,8 @@ struct _GstDepthInfo {
  *
  * Goes with each depth frame. Tags: video and size; a scaled frame gets scaled intrinsics. Scale depth with
  * nearest-neighbour: other filters mix the 0 of "no value" in.
+ *
+ * Since: 0.1
  */
 struct _GstDepthMeta {
     GstMeta meta;

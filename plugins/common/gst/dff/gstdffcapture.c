@@ -83,6 +83,8 @@ static void give_out(GstElement *bin, GstPad *pad, const gchar *name)
  * is a tee, or else the free source pad of that name of any element.
  *
  * Returns: (transfer floating): the bin
+ *
+ * Since: 0.1
  */
 GstElement *gst_dff_capture_new(const gchar *launch, GError **error)
 {
@@ -126,6 +128,8 @@ GstElement *gst_dff_capture_new(const gchar *launch, GError **error)
  * Whether frames are what an output of this name must give.
  *
  * Returns: %TRUE if they are
+ *
+ * Since: 0.1
  */
 gboolean gst_dff_capture_check_caps(const gchar *output, const GstCaps *caps, GError **error)
 {

@@ -15,6 +15,8 @@
  * is not there is an error when the elements start.
  *
  * Returns: (transfer full): the context
+ *
+ * Since: 0.1
  */
 GstContext *gst_context_new_dff_device(const gchar *device)
 {

@@ -12,6 +12,8 @@ G_BEGIN_DECLS
  * Type of the #GstContext by which elements share an OpenCL device. Its field "device" (string) is part of
  * the device's name, as for the elements' property `device`. Contexts that elements made also have the field
  * "gst.dff.opencl.device", the open device itself: hand them to other pipelines as they are.
+ *
+ * Since: 0.1
  */
 #define GST_DFF_DEVICE_CONTEXT_TYPE "gst.dff.opencl.device"
 

@@ -46,7 +46,11 @@ static gboolean is_stack_format(GstVideoFormat format)
  * gst_focal_stack_info_copy: (skip)
  * @info: a #GstFocalStackInfo
  *
+ * Copies what was parsed.
+ *
  * Returns: (transfer full): a copy, to be freed with gst_focal_stack_info_free()
+ *
+ * Since: 0.1
  */
 GstFocalStackInfo *gst_focal_stack_info_copy(const GstFocalStackInfo *info)
 {
@@ -56,6 +60,10 @@ GstFocalStackInfo *gst_focal_stack_info_copy(const GstFocalStackInfo *info)
 /**
  * gst_focal_stack_info_free: (skip)
  * @info: what gst_focal_stack_info_new_from_caps() or gst_focal_stack_info_copy() gave
+ *
+ * Frees what was parsed.
+ *
+ * Since: 0.1
  */
 void gst_focal_stack_info_free(GstFocalStackInfo *info)
 {
@@ -69,6 +77,8 @@ void gst_focal_stack_info_free(GstFocalStackInfo *info)
  * For languages that cannot put a #GstVideoInfo on their stack.
  *
  * Returns: (transfer full) (nullable): the parsed caps, or %NULL if @caps are not those of a focal stack
+ *
+ * Since: 0.1
  */
 GstFocalStackInfo *gst_focal_stack_info_new_from_caps(const GstCaps *caps)
 {
@@ -82,7 +92,11 @@ GstFocalStackInfo *gst_focal_stack_info_new_from_caps(const GstCaps *caps)
  * @info: (out caller-allocates): the parsed caps
  * @caps: fixed caps
  *
+ * Parses the caps of focal stacks.
+ *
  * Returns: %FALSE if @caps are not those of a focal stack
+ *
+ * Since: 0.1
  */
 gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *caps)
 {
@@ -105,7 +119,11 @@ gboolean gst_focal_stack_info_from_caps(GstFocalStackInfo *info, const GstCaps *
  * gst_focal_stack_info_to_caps:
  * @info: format, size, planes and rate
  *
+ * Makes the caps of focal stacks.
+ *
  * Returns: (transfer full): the caps of such stacks
+ *
+ * Since: 0.1
  */
 GstCaps *gst_focal_stack_info_to_caps(const GstFocalStackInfo *info)
 {
@@ -120,7 +138,11 @@ GstCaps *gst_focal_stack_info_to_caps(const GstFocalStackInfo *info)
  * gst_focal_stack_info_get_size:
  * @info: format, size and planes
  *
+ * How large a stack is.
+ *
  * Returns: bytes of a stack in the default layout
+ *
+ * Since: 0.1
  */
 gsize gst_focal_stack_info_get_size(const GstFocalStackInfo *info)
 {
@@ -248,6 +270,8 @@ static gboolean locate_by_meta(const GstFocalStackInfo *info, const GstVideoMeta
  * have exactly the size of a stack.
  *
  * Returns: %FALSE with @error set if the buffer does not hold the plane; the message names both sizes
+ *
+ * Since: 0.1
  */
 gboolean gst_focal_stack_info_locate_plane(const GstFocalStackInfo *info, GstBuffer *buffer, guint plane,
                                            gsize offset[GST_VIDEO_MAX_PLANES],
@@ -294,6 +318,8 @@ static gboolean is_unknown_or_within(gdouble value, gdouble largest)
  *
  * Returns: (transfer none) (nullable): the meta; %NULL without @error if @buffer has none, %NULL with @error
  * set if it has one that cannot be
+ *
+ * Since: 0.1
  */
 GstFocalStackMeta *gst_focal_stack_info_get_meta(const GstFocalStackInfo *info, GstBuffer *buffer,
                                                  GError **error)
@@ -328,6 +354,8 @@ GstFocalStackMeta *gst_focal_stack_info_get_meta(const GstFocalStackInfo *info, 
  * @buffer: a writable stack in the default layout
  *
  * Adds a GstVideoMeta a plane, with the plane's number as id.
+ *
+ * Since: 0.1
  */
 void gst_focal_stack_info_add_video_metas(const GstFocalStackInfo *info, GstBuffer *buffer)
 {

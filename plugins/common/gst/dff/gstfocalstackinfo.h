@@ -7,21 +7,46 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GST_FOCAL_STACK_CAPS_NAME:
+ *
+ * The media type of focal stacks.
+ *
+ * Since: 0.1
+ */
 #define GST_FOCAL_STACK_CAPS_NAME "video/x-focal-stack"
+/**
+ * GST_FOCAL_STACK_FORMATS:
+ *
+ * The formats of their planes, as template caps list them.
+ *
+ * Since: 0.1
+ */
 #define GST_FOCAL_STACK_FORMATS "{ GRAY8, GRAY16_LE, I420, NV12, RGB, BGR, RGBx, BGRx, RGBA64_LE }"
 
 /**
  * GST_FOCAL_STACK_MAX_SIDE:
  *
  * The greatest width and height of a plane.
+ *
+ * Since: 0.1
  */
 #define GST_FOCAL_STACK_MAX_SIDE 16384
+/**
+ * GST_FOCAL_STACK_SIZES:
+ *
+ * The fields of template caps for planes of any size up to #GST_FOCAL_STACK_MAX_SIDE.
+ *
+ * Since: 0.1
+ */
 #define GST_FOCAL_STACK_SIZES "width = (int) [ 1, 16384 ], height = (int) [ 1, 16384 ]"
 
 /**
  * GST_FOCAL_STACK_CAPS_MAKE:
  *
  * Template caps of a focal stack; the framerate is stacks per second.
+ *
+ * Since: 0.1
  */
 #define GST_FOCAL_STACK_CAPS_MAKE                                                                            \
     GST_FOCAL_STACK_CAPS_NAME ", format = (string) " GST_FOCAL_STACK_FORMATS ", " GST_FOCAL_STACK_SIZES      \
@@ -35,6 +60,8 @@ typedef struct _GstFocalStackInfo GstFocalStackInfo;
  * @frame: format, size, colorimetry of one plane, and its default layout; its frame rate is stacks per second
  *
  * The caps of a focal stack, parsed.
+ *
+ * Since: 0.1
  */
 struct _GstFocalStackInfo {
     guint planes;

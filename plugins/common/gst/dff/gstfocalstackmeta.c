@@ -4,13 +4,22 @@
  * SECTION:gstfocalstackmeta
  * @short_description: what is known of a focal stack
  */
-#include "gstfocalstackmeta-private.h"
+#include "private/gstfocalstackshared.h"
 
-#include "gstdffbytes.h"
-#include "gstfocusmeta-private.h"
+#include "private/gstdffbytes.h"
+#include "private/gstfocusbytes.h"
 
 #define KIND 'S'
 
+/**
+ * gst_focal_stack_meta_api_get_type: (skip)
+ *
+ * The type of the meta's API, as #GST_FOCAL_STACK_META_API_TYPE.
+ *
+ * Returns: the type
+ *
+ * Since: 0.1
+ */
 GType gst_focal_stack_meta_api_get_type(void)
 {
     static GType type;
@@ -139,6 +148,15 @@ static const GstMetaInfo *register_meta(void)
 }
 #endif
 
+/**
+ * gst_focal_stack_meta_get_info: (skip)
+ *
+ * What GStreamer knows of the meta, as #GST_FOCAL_STACK_META_INFO.
+ *
+ * Returns: (transfer none): a description that lives as long as the program
+ *
+ * Since: 0.1
+ */
 const GstMetaInfo *gst_focal_stack_meta_get_info(void)
 {
     static const GstMetaInfo *info;
@@ -158,6 +176,8 @@ const GstMetaInfo *gst_focal_stack_meta_get_info(void)
  *
  * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
  * writable
+ *
+ * Since: 0.1
  */
 GstFocalStackMeta *gst_buffer_add_focal_stack_meta(GstBuffer *buffer, guint64 sequence, guint planes)
 {
@@ -183,7 +203,11 @@ GstFocalStackMeta *gst_buffer_add_focal_stack_meta(GstBuffer *buffer, guint64 se
  * gst_buffer_get_focal_stack_meta:
  * @buffer: a #GstBuffer
  *
+ * Asks a buffer what is known of a focal stack.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL if @buffer has none
+ *
+ * Since: 0.1
  */
 GstFocalStackMeta *gst_buffer_get_focal_stack_meta(GstBuffer *buffer)
 {
@@ -195,6 +219,10 @@ GstFocalStackMeta *gst_buffer_get_focal_stack_meta(GstBuffer *buffer)
  * @meta: a #GstFocalStackMeta
  * @plane: which plane, below the stack's number of planes
  * @info: how it was focused and taken
+ *
+ * Says how a plane of the stack was focused and taken.
+ *
+ * Since: 0.1
  */
 void gst_focal_stack_meta_set_focus(GstFocalStackMeta *meta, guint plane, const GstFocusInfo *info)
 {
@@ -210,7 +238,11 @@ void gst_focal_stack_meta_set_focus(GstFocalStackMeta *meta, guint plane, const 
  * @plane: which plane
  * @info: (out caller-allocates): how it was focused and taken
  *
+ * Asks how a plane of the stack was focused and taken.
+ *
  * Returns: %FALSE if the stack has no such plane
+ *
+ * Since: 0.1
  */
 gboolean gst_focal_stack_meta_get_focus(const GstFocalStackMeta *meta, guint plane, GstFocusInfo *info)
 {
@@ -225,7 +257,11 @@ gboolean gst_focal_stack_meta_get_focus(const GstFocalStackMeta *meta, guint pla
  * gst_focal_stack_meta_to_bytes:
  * @meta: a #GstFocalStackMeta
  *
+ * Packs a meta for files and networks.
+ *
  * Returns: (transfer full): the meta as bytes with a version, for files and networks
+ *
+ * Since: 0.1
  */
 GBytes *gst_focal_stack_meta_to_bytes(const GstFocalStackMeta *meta)
 {
@@ -262,8 +298,12 @@ static gboolean names_planes(guint64 mask, guint planes)
  * @bytes: what gst_focal_stack_meta_to_bytes() gave
  * @error: where an error goes
  *
+ * Gives a buffer a meta that was packed. The bytes may come from anybody.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
  * unknown version
+ *
+ * Since: 0.1
  */
 GstFocalStackMeta *gst_buffer_add_focal_stack_meta_from_bytes(GstBuffer *buffer, GBytes *bytes,
                                                               GError **error)

@@ -6,12 +6,18 @@
 
 G_BEGIN_DECLS
 
+/**
+ * GST_FOCAL_STACK_MAX_PLANES:
+ *
+ * The most planes that a stack has.
+ *
+ * Since: 0.1
+ */
 #define GST_FOCAL_STACK_MAX_PLANES 64
 #define GST_FOCAL_STACK_META_API_TYPE (gst_focal_stack_meta_api_get_type())
 #define GST_FOCAL_STACK_META_INFO (gst_focal_stack_meta_get_info())
 
 typedef struct _GstFocalStackMeta GstFocalStackMeta;
-typedef struct _GstFocalStackShared GstFocalStackShared;
 
 /**
  * GstFocalStackMeta:
@@ -23,6 +29,8 @@ typedef struct _GstFocalStackShared GstFocalStackShared;
  * @repeated: bit z is set where plane z repeats a picture from elsewhere (another sweep or plane)
  *
  * What is known of a focal stack. It has no tags.
+ *
+ * Since: 0.1
  */
 struct _GstFocalStackMeta {
     GstMeta meta;
@@ -35,7 +43,7 @@ struct _GstFocalStackMeta {
 
     /*< private >*/
     GstFocusInfo *focus;
-    GstFocalStackShared *shared;
+    gpointer shared;
 };
 
 GST_DFF_API GType gst_focal_stack_meta_api_get_type(void);

@@ -4,13 +4,22 @@
  * SECTION:gstfocusmeta
  * @short_description: which plane of which sweep a frame is
  */
-#include "gstdffbytes.h"
-#include "gstfocusmeta-private.h"
+#include "private/gstdffbytes.h"
+#include "private/gstfocusbytes.h"
 
 #include <math.h>
 
 #define KIND 'F'
 
+/**
+ * gst_focus_meta_api_get_type: (skip)
+ *
+ * The type of the meta's API, as #GST_FOCUS_META_API_TYPE.
+ *
+ * Returns: the type
+ *
+ * Since: 0.1
+ */
 GType gst_focus_meta_api_get_type(void)
 {
     static GType type;
@@ -92,6 +101,15 @@ static const GstMetaInfo *register_meta(void)
 }
 #endif
 
+/**
+ * gst_focus_meta_get_info: (skip)
+ *
+ * What GStreamer knows of the meta, as #GST_FOCUS_META_INFO.
+ *
+ * Returns: (transfer none): a description that lives as long as the program
+ *
+ * Since: 0.1
+ */
 const GstMetaInfo *gst_focus_meta_get_info(void)
 {
     static const GstMetaInfo *info;
@@ -106,6 +124,8 @@ const GstMetaInfo *gst_focus_meta_get_info(void)
  * @info: a #GstFocusInfo
  *
  * Sets every field to "unknown".
+ *
+ * Since: 0.1
  */
 void gst_focus_info_init(GstFocusInfo *info)
 {
@@ -117,8 +137,12 @@ void gst_focus_info_init(GstFocusInfo *info)
  * @buffer: a writable #GstBuffer
  * @info: how the plane was focused and taken
  *
+ * Says with a buffer which plane of which sweep a frame is.
+ *
  * Returns: (transfer none) (nullable): the meta, which belongs to @buffer, or %NULL if @buffer is not
  * writable
+ *
+ * Since: 0.1
  */
 GstFocusMeta *gst_buffer_add_focus_meta(GstBuffer *buffer, const GstFocusInfo *info)
 {
@@ -135,7 +159,11 @@ GstFocusMeta *gst_buffer_add_focus_meta(GstBuffer *buffer, const GstFocusInfo *i
  * gst_buffer_get_focus_meta:
  * @buffer: a #GstBuffer
  *
+ * Asks a buffer which plane of which sweep a frame is.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL if @buffer has none
+ *
+ * Since: 0.1
  */
 GstFocusMeta *gst_buffer_get_focus_meta(GstBuffer *buffer)
 {
@@ -146,6 +174,10 @@ GstFocusMeta *gst_buffer_get_focus_meta(GstBuffer *buffer)
  * gst_focus_meta_get_focus:
  * @meta: a #GstFocusMeta
  * @info: (out caller-allocates): where the facts go
+ *
+ * Copies what the meta says, as gst_buffer_add_focus_meta() takes it.
+ *
+ * Since: 0.1
  */
 void gst_focus_meta_get_focus(const GstFocusMeta *meta, GstFocusInfo *info)
 {
@@ -189,7 +221,11 @@ gboolean gst_focus_info_read(GstFocusInfo *info, GstByteReader *reader)
  * gst_focus_meta_to_bytes:
  * @meta: a #GstFocusMeta
  *
+ * Packs a meta for files and networks.
+ *
  * Returns: (transfer full): the meta as bytes with a version, for files and networks
+ *
+ * Since: 0.1
  */
 GBytes *gst_focus_meta_to_bytes(const GstFocusMeta *meta)
 {
@@ -208,8 +244,12 @@ GBytes *gst_focus_meta_to_bytes(const GstFocusMeta *meta)
  * @bytes: what gst_focus_meta_to_bytes() gave
  * @error: where an error goes
  *
+ * Gives a buffer a meta that was packed. The bytes may come from anybody.
+ *
  * Returns: (transfer none) (nullable): the meta, or %NULL with @error set if @bytes are damaged or of an
  * unknown version
+ *
+ * Since: 0.1
  */
 GstFocusMeta *gst_buffer_add_focus_meta_from_bytes(GstBuffer *buffer, GBytes *bytes, GError **error)
 {

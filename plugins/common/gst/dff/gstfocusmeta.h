@@ -24,6 +24,8 @@ typedef struct _GstFocusMeta GstFocusMeta;
  * @frame_id: the camera's number of the frame
  *
  * How one plane of a sweep was focused and taken.
+ *
+ * Since: 0.1
  */
 struct _GstFocusInfo {
     guint64 sweep;
@@ -50,6 +52,8 @@ struct _GstFocusInfo {
  *
  * Says of a video frame which plane of which sweep it is. It has no tags, so that converters, croppers and
  * scalers keep it.
+ *
+ * Since: 0.1
  */
 struct _GstFocusMeta {
     GstMeta meta;

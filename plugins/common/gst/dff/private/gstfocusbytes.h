@@ -2,7 +2,7 @@
  * Copyright (C) 2026 the gst-plugins-dff authors */
 #pragma once
 
-#include "gstfocusmeta.h"
+#include "../gstfocusmeta.h"
 
 #include <gst/base/gstbytereader.h>
 #include <gst/base/gstbytewriter.h>
