@@ -222,6 +222,20 @@ class Results(Program):
         self.assertEqual(spec.get_string_attribute('oiio:ColorSpace'), 'Linear')
         self.assertLess(np.abs(pixels.astype(float) - sharp() / 64)[16:-16, 16:-16].mean(), 0.06)
 
+    def test_numbers_that_count_are_not_all_white(self):
+        """As of photons: what 1 is says nothing of them, and half floats end at 65,504."""
+        for number in range(PLANES):
+            write(self.photos / f'{number}.tif', (plane(number)[:, :, :1] * 400).astype(np.float32))
+        self.stack(self.photos, '-o', self.out / 'a.tif', '--mesh', self.out / 'm.glb', '--even', 'off', '--align', 'off')
+        _, pixels = read(self.out / 'a.tif')
+        self.assertLess((pixels == 65535).mean(), 0.01)
+        shown = np.where(pixels <= 0.04045 * 65535, pixels / 65535 / 12.92, ((pixels / 65535 + 0.055) / 1.055) ** 2.4)[16:-16, 16:-16, 0]
+        truth = sharp()[16:-16, 16:-16, 0]
+        self.assertLess(np.abs(shown / np.median(shown) - truth / np.median(truth)).mean(), 0.06)
+        self.stack(self.photos, '-o', self.out / 'a.exr', '--even', 'off', '--align', 'off')
+        _, pixels = read(self.out / 'a.exr')
+        self.assertLess(np.abs(pixels[16:-16, 16:-16, 0] / 400 - truth).mean(), 4)
+
     def test_an_alignment_is_used_again(self):
         self.write_sweep()
         shifted = np.round(plane(2, np.roll(sharp(), 5, 1))).astype(np.uint8)

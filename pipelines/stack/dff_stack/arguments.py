@@ -26,7 +26,8 @@ ORDER
 RESULTS
   The ending of a name says what is written: .tif, .png, .jpg or .exr. All results are written when everything is computed; if
   something fails or Ctrl-C is pressed, none is. TIFF, PNG have the bits of the pictures, JPEG 8, EXR half floats of linear
-  light. EXIF of the first picture, its profile and what was done stand in the file. Pictures are turned upright.
+  light. Of numbers with a point, 1 becomes white, or the brightest where most are above 1, as of photons that were counted.
+  EXIF of the first picture, its profile and what was done stand in the file. Pictures are turned upright.
   --depth   TIFF and EXR: numbers with a point, NaN where depth is not known. They are micrometres where the step between
             pictures is known: from --step, an OME-TIFF or ImageJ's TIFF; else plane numbers, 0 for the first picture of the order.
             PNG: 16 bits; the description in the file says what a pixel means, 0 is not known.

@@ -13,6 +13,7 @@ import OpenImageIO as oiio
 from dff_stack import SOFTWARE, Unusable, exif, one_line, scratch
 from dff_stack.pictures import text_of
 
+LARGEST_HALF = 65504.0
 PICTURE_ENDINGS = ('.tif', '.tiff', '.png', '.jpg', '.jpeg', '.exr')
 # What describes the file that was read and not the picture in it.
 OF_THE_FILE = ('oiio:.*', 'jpeg:.*', 'tiff:.*', 'png:.*', 'openexr:.*', 'raw:.*', 'compression', 'planarconfig', 'worldtocamera',
@@ -163,12 +164,17 @@ def srgb_of_linear(light):
     return np.round(shown * 65535).astype(np.uint16)
 
 
+def white_of(light):
+    """The light that is shown as white: 1, or the brightest where most of a picture is above that, as of photons that were counted."""
+    return np.float32(light.max() if np.median(light) > 1 else 1)
+
+
 def as_file_holds(pixels, suffix):
     """EXR holds linear light, and the others whole numbers of sRGB, JPEG 8 bits of them."""
     is_float = pixels.dtype.kind == 'f'
     if suffix == '.exr':
         return pixels if is_float else linear_of_srgb(pixels)
-    pixels = srgb_of_linear(pixels) if is_float else pixels
+    pixels = srgb_of_linear(pixels / white_of(pixels)) if is_float else pixels
     if suffix in ('.jpg', '.jpeg') and pixels.dtype.itemsize == 2:
         return np.round(pixels / 257).astype(np.uint8)
     return pixels
@@ -182,7 +188,7 @@ def write_picture(files, path, pixels, first, description, pixel_um=None):
     if path.suffix.lower() in ('.jpg', '.jpeg'):
         exif.fit_for_jpeg(spec)
     if path.suffix.lower() == '.exr':
-        spec.set_format(oiio.HALF)
+        spec.set_format(oiio.HALF if held.max() <= LARGEST_HALF else oiio.FLOAT)
         spec.erase_attribute('ICCProfile.*')
         spec['oiio:ColorSpace'] = 'Linear'
         taken = text_of(first, 'Exif:DateTimeOriginal')
