@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / 'tests/eval'))
 from elements import run  # noqa: E402
 from moving import HEIGHT, PLANES, WIDTH, camera  # noqa: E402
 
-SWEEPS = 10
+SWEEPS = 12
 SIZE = 288, 272  # of the part around the ball
 WAYS = [('', ''), ('focalstackdenoise frames=16 local-motion=true !', 'steady=on')]
 
@@ -46,7 +46,7 @@ def main(path):
         np.ascontiguousarray(picture).tofile(where / 'both')
         height, width, _ = picture.shape
         run(f'filesrc location={where}/both blocksize={picture.size} ! rawvideoparse format=rgb width={width} height={height} ! '
-            f'videoconvert ! jpegenc quality=85 ! filesink location={path}')
+            f'videoconvert ! jpegenc quality=75 ! filesink location={path}')
 
 
 if __name__ == '__main__':
