@@ -38,7 +38,7 @@ std::shared_ptr<SharedUpload> shared_upload(GstBuffer *stack)
         return nullptr;
 
     GstMemory *memory = gst_buffer_peek_memory(stack, 0);
-    GstFocalStackShared *shared = meta->shared;
+    auto *shared = static_cast<GstFocalStackShared *>(meta->shared);
     g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&shared->mutex);
     const auto *held = static_cast<MemoryUpload *>(shared->data);
     if (held && held->memory == memory)
