@@ -5,6 +5,7 @@
 import os
 import pathlib
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -13,7 +14,7 @@ import unittest
 
 import numpy as np
 
-from studio_process import PATIENCE, Studio, rig
+from studio_process import PATIENCE, SWEEP, Studio, rig
 
 try:
     from selenium import webdriver
@@ -126,11 +127,58 @@ class Browser:
         return None
 
 
+def has_network():
+    return 'studio0' in [name for _, name in socket.if_nameindex()]
+
+
+def connect_network():
+    if not has_network():
+        for command in NETWORK:
+            subprocess.run(command.split(), check=True)
+
+
+class Alone(unittest.TestCase):
+    """First, before there is any network."""
+
+    def test_page_says_that_the_video_finds_no_way(self):
+        self.assertFalse(has_network())
+        with tempfile.TemporaryDirectory() as folder, Studio('--launch', rig()) as studio:
+            browser = Browser(folder)
+            self.addCleanup(browser.driver.quit)
+            browser.driver.get(f'http://localhost:{studio.port}/')
+            browser.until('return /finds no way/.test(state.textContent)')
+            connect_network()
+            browser.driver.refresh()  # Chromium looks for networks once a page
+            browser.is_playing()
+            browser.until('return state.textContent === "live"')
+
+
+class OtherSources(unittest.TestCase):
+    def test_what_a_source_does_not_give_is_told_and_not_asked_for(self):
+        connect_network()
+        planes = SWEEP.format('is-live=true rate=2')
+        with tempfile.TemporaryDirectory() as folder:
+            browser = Browser(folder)
+            self.addCleanup(browser.driver.quit)
+            for launch, video, absent in ((planes + ' ! focalstackmux ! dffdepth name=depth', 'depth', 'no-picture'),
+                                          (planes + ' ! identity name=planes', 'picture', 'no-depth')):
+                with Studio('--launch', launch) as studio:
+                    browser.driver.get(f'http://localhost:{studio.port}/')
+                    browser.until('return window[arguments[0]].currentTime > 1', video)
+                    hidden = browser.run('return [...document.querySelectorAll(".absent[hidden]")].map(note => note.id)')
+                    self.assertEqual({'no-picture', 'no-depth', 'no-relief'} - set(hidden), {absent})
+                    browser.click_at(0.5, 0.5)
+                    browser.drag(0.1, 0.5, 0.9, 0.5)
+                    browser.press('4')
+                    browser.click('#freeze')
+                    browser.until('return freeze.textContent === "Go on"')
+                    self.assertTrue(browser.run('return problem.hidden'), browser.text('problem'))
+
+
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        for command in NETWORK:
-            subprocess.run(command.split(), check=True)
+        connect_network()
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.source = rig(os.environ.get('DFF_STUDIO_SOURCE', 'is-live=true rate=4'))
@@ -210,6 +258,11 @@ class Page(unittest.TestCase):
         for name, magic in (('picture.png', b'\x89PNG'), ('frame.exr', b'\x76\x2f\x31\x01'), ('cloud.ply', b'ply\n')):
             self.browser.click(f'[data-file="{name}"]')
             self.assertTrue(self.browser.file(name).startswith(magic))
+        self.assertEqual(self.browser.text('freeze'), 'Freeze')
+        self.browser.click('[data-file="depth.png"]')  # while the next one is asked for
+        self.browser.click('[data-file="picture.png"]')
+        self.browser.file('depth.png')
+        self.assertEqual(self.browser.text('freeze'), 'Freeze')
         self.browser.click('#record')
         self.browser.until('return /Stop, [1-9]/.test(record.textContent)')
         self.browser.click('#record')
@@ -236,12 +289,22 @@ class Page(unittest.TestCase):
     def test_8_server_restarts(self):
         port = self.studio.port
         self.studio.end()
-        self.browser.until('return /gone/.test(state.textContent)')
+        self.browser.until('return /gone/.test(state.textContent) && rate.textContent === "–"')
+        for button in ('[data-file="picture.png"]', '#freeze', '#record'):
+            self.browser.run('problem.hidden = true')
+            self.browser.click(button)
+            self.browser.until('return !problem.hidden && /gone/.test(problem.textContent)')
         type(self).studio = Studio('--launch', self.source, port=port)
         self.browser.until('return state.textContent === "live"')
         self.browser.is_playing()
         errors = [entry for entry in self.browser.driver.get_log('browser') if entry['level'] == 'SEVERE' and 'WebSocket' not in entry['message']]
         self.assertEqual(errors, [])
+
+    def test_9_lost_video_is_told(self):
+        self.browser.run('''let packets = 0;
+                            RTCPeerConnection.prototype.getStats = async () => (packets += 100, new Map([[0,
+                              { type: 'inbound-rtp', framesDecoded: packets, packetsReceived: packets, packetsLost: packets / 4 }]]));''')
+        self.browser.until('return /^20 % of the video is lost/.test(state.textContent)')
 
 
 if __name__ == '__main__':

@@ -20,6 +20,8 @@ from studio_process import PATTERNS, ROOT, SWEEP, Socket, Studio, rig, trusting 
 
 sys.path.insert(0, str(ROOT / 'pipelines/studio'))
 from dff_studio import Unusable  # noqa: E402
+from dff_studio.frames import rate_of  # noqa: E402
+from dff_studio.planes import peak_of  # noqa: E402
 from dff_studio.source import Source  # noqa: E402
 
 Gst.init(None)
@@ -181,6 +183,20 @@ class Measures(unittest.TestCase):
         self.assertIsNotNone(sample)
         codes = np.frombuffer(sample.get_buffer().extract_dup(0, 160 * 120 * 2), '<u2')
         self.assertGreater((codes > 0).mean(), 0.8)
+
+
+class Reads(unittest.TestCase):
+    def test_rate_of_slow_sweeps_and_of_those_that_stop(self):
+        self.assertEqual(rate_of([], 10), 0)
+        self.assertEqual(rate_of([9], 10), 0)
+        self.assertAlmostEqual(rate_of([8.0, 8.5, 9.0, 9.5, 10.0], 10.1), 2)
+        self.assertAlmostEqual(rate_of([0, 4, 8, 12], 13), 0.25)
+        self.assertLess(rate_of([0, 4, 8, 12], 30), 0.1)
+
+    def test_peak_of_a_fine_sweep_is_the_middle_of_the_sharp_planes(self):
+        self.assertAlmostEqual(peak_of(np.array([0.1, 0.5, 1, 1, 0.999, 1, 1, 0.5, 0.1])), 4)
+        self.assertAlmostEqual(peak_of(np.exp(-(np.arange(6) - 2.3) ** 2)), 2.3)
+        self.assertEqual(peak_of(np.array([1, 0.5, 0.2])), 0)
 
 
 class Refuses(unittest.TestCase):

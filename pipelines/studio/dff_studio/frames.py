@@ -113,6 +113,16 @@ def size_of(sample):
     return structure.get_value('width'), structure.get_value('height')
 
 
+def rate_of(arrivals, now):
+    """A second, with none but the last three seconds or frames; less when the next one is overdue."""
+    recent = [arrival for arrival in arrivals if now - arrival < 3]
+    recent = list(arrivals)[-3:] if len(recent) < 3 else recent
+    if len(recent) < 2 or recent[-1] == recent[0]:
+        return 0.0
+    overdue = max(0.0, now - recent[-1] - (recent[-1] - recent[-2]))
+    return (len(recent) - 1) / (recent[-1] + overdue - recent[0])
+
+
 class Frames:
     """The last frame of each output. Filled by streaming threads, read by any."""
 
@@ -152,12 +162,10 @@ class Frames:
         return picture, Depth.of(depth) if depth else None
 
     def pace(self):
-        """Frames a second over the last three, and seconds from the first exposure of the last until it was there."""
-        now = time.monotonic()
+        """Frames a second over the last three, or over the last three frames where they take longer; and seconds from the first
+        exposure of the last until it was there."""
         with self.lock:
-            recent = [arrival for arrival in self.arrivals if now - arrival < 3]
-            rate = (len(recent) - 1) / (recent[-1] - recent[0]) if len(recent) > 1 and recent[-1] > recent[0] else 0.0
-            return rate, self.age if recent else None
+            return rate_of(self.arrivals, time.monotonic()), self.age if self.arrivals else None
 
     def silence(self):
         """Seconds since the last frame of any output; none where there was none."""

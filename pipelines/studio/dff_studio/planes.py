@@ -10,6 +10,7 @@ from gi.repository import Gst, GstDff, GstVideo
 from dff_studio.frames import place, without_nan
 
 WINDOW = 8  # pixels on each side of the place over which sharpness is summed
+PLATEAU = 0.98  # of the greatest sharpness, above which planes are taken for equally sharp
 LUMA = np.array([0.299, 0.587, 0.114])  # of red, green, blue: BT.601
 # Places of red, green and blue among the samples of a pixel; where there is one, it is luma.
 SAMPLES = {'GRAY8': ('u1', 1, (0,)), 'GRAY16_LE': ('<u2', 1, (0,)), 'I420': ('u1', 1, (0,)), 'NV12': ('u1', 1, (0,)),
@@ -78,7 +79,8 @@ class Stack:
 
     def sharpness(self, x, y):
         """At a place in parts of width and height: the mean square of second differences over a window, for each plane, the
-        largest being 1; and where a parabola through the logarithms of the largest and its neighbours peaks, in planes."""
+        largest being 1; and where a parabola through the logarithms of the largest and its neighbours peaks, in planes, or the
+        middle of a plateau."""
         column, row = place((self.height, self.width), x, y)
         left, right = max(0, column - WINDOW - 1), min(self.width, column + WINDOW + 2)
         top, bottom = max(0, row - WINDOW - 1), min(self.height, row + WINDOW + 2)
@@ -99,6 +101,13 @@ def curvature(luma):
 
 def peak_of(measured):
     best = int(np.argmax(measured))
+    first = last = best
+    while first > 0 and measured[first - 1] > PLATEAU * measured[best]:
+        first -= 1
+    while last < len(measured) - 1 and measured[last + 1] > PLATEAU * measured[best]:
+        last += 1
+    if last - first > 1:  # a fine sweep, of which several planes are as sharp as can be
+        return (first + last) / 2
     if best in (0, len(measured) - 1) or measured.min() <= 0:
         return float(best)
     before, here, after = np.log(measured[best - 1:best + 2])

@@ -198,7 +198,7 @@ class Source:
         self.failures = 0 if self.delivered else self.failures
         wait = WAITS[min(self.failures, len(WAITS) - 1)]
         self.failures += 1
-        text = f'The source stopped: {reason}. It is started again in {wait} s'
+        text = f'The source stopped: {reason.rstrip(".")}. It is started again in {wait} s'
         log.warning('%s', text)
         self.on_state(text)
         self.worker.submit(self.stop)

@@ -91,9 +91,11 @@ class Studio:
         """In words for the page, and whether it is trouble; no words where frames come."""
         if self.trouble:
             return self.trouble, True
+        silence = self.frames.silence() if self.source.delivered else 0.0
+        if self.source.progress and (silence > SILENCE or not self.source.delivered):
+            return self.source.progress, False
         if not self.source.delivered:
-            return self.source.progress or 'The source starts', False
-        silence = self.frames.silence()
+            return 'The source starts', False
         return (f'No frame for {silence:.0f} s', True) if silence > SILENCE else ('', False)
 
     def tell_state(self):
@@ -171,7 +173,7 @@ class Studio:
         else:
             depth = self.frames.depth()
         if not depth:
-            raise Unusable('There is no depth yet')
+            raise Unusable('There is no depth yet' if 'depth' in self.source.sinks else 'This source gives no depth')
         return depth
 
     def uncertainty_of(self, number):

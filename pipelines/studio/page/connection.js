@@ -5,6 +5,7 @@
 const FIRST_WAIT = 500, LONGEST_WAIT = 5000; // milliseconds before the next try
 const HERE = 30000; // milliseconds between two signs of life
 const PATIENCE = 6000; // milliseconds that a broken video may take to mend itself
+const WAY = 12000; // milliseconds that a new video may take to find its way
 const LOOK = 4000; // milliseconds between two looks at what of the video gets through
 const LOST = 0.1; // share of lost packets that is told
 
@@ -45,14 +46,19 @@ export class Connection extends EventTarget {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
 
+  // Whether there is a server to send to.
   send(message) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    const open = this.socket.readyState === WebSocket.OPEN;
+    if (open) this.socket.send(JSON.stringify(message));
+    return open;
   }
 
   async answer(sdp) {
     this.leave();
     const peer = this.peer = new RTCPeerConnection({ iceServers: [] });
     this.early = [];
+    // A browser that has no address to be reached at stays silent about it.
+    this.broken = setTimeout(() => this.tryAgain(), WAY);
     peer.ontrack = event => {
       const video = this.videos[this.tracks[peer.getTransceivers().indexOf(event.transceiver)]];
       if (!video) return;
@@ -66,14 +72,13 @@ export class Connection extends EventTarget {
         this.send({ type: 'candidate', line: event.candidate.sdpMLineIndex, candidate: event.candidate.candidate });
     };
     peer.onconnectionstatechange = () => {
-      clearTimeout(this.broken);
-      if (peer.connectionState === 'connecting') this.tellVideo('The video comes', false);
-      if (peer.connectionState === 'connected') this.tellVideo('', false);
-      if (peer.connectionState === 'failed') {
-        this.tellVideo('The video finds no way from the server to this browser: trying again', true);
-        this.send({ type: 'watch' });
+      if (peer.connectionState === 'connected') {
+        clearTimeout(this.broken);
+        this.tellVideo('', false);
       }
+      if (peer.connectionState === 'failed') this.tryAgain();
       if (peer.connectionState === 'disconnected') {
+        clearTimeout(this.broken);
         this.tellVideo('The video is interrupted', true);
         this.broken = setTimeout(() => this.send({ type: 'watch' }), PATIENCE);
       }
@@ -87,6 +92,12 @@ export class Connection extends EventTarget {
 
   tellVideo(text, bad) {
     this.tell('video', { text, bad });
+  }
+
+  tryAgain() {
+    clearTimeout(this.broken);
+    this.tellVideo('The video finds no way from the server to this browser: trying again', true);
+    this.send({ type: 'watch' });
   }
 
   // What of the video gets through.

@@ -50,7 +50,10 @@ function spaced(work, pause) {
 
 const server = new Connection({ aif: picture, depth });
 const send = message => server.send(message);
+// What the user wants done, and not just shown.
+const order = message => send(message) || problem('The server is gone: this was not done');
 const onFrame = message => ({ ...message, frozen: frozen?.number ?? 0 });
+const askOfDepth = message => outputs.includes('depth') && send(onFrame(message));
 const isShown = name => !part(name).hidden;
 
 // Relief
@@ -79,13 +82,13 @@ part('height').addEventListener('input', event => {
 const views = new Views([pictureView, depthView]);
 const planes = new Planes(send, () => isShown('planes') && outputs.includes('stacks'));
 let cut = null;
-views.addEventListener('point', spaced(event => send(onFrame({ type: 'probe', ...event.detail })), PROBE_PAUSE));
+views.addEventListener('point', spaced(event => askOfDepth({ type: 'probe', ...event.detail }), PROBE_PAUSE));
 views.addEventListener('click', event => {
   showPanel('planes');
   planes.pick(event.detail);
-  send(onFrame({ type: 'probe', ...event.detail }));
+  askOfDepth({ type: 'probe', ...event.detail });
 });
-const askProfile = spaced(() => cut && send(onFrame({ type: 'profile', ...cut })), PROFILE_PAUSE);
+const askProfile = spaced(() => cut && askOfDepth({ type: 'profile', ...cut }), PROFILE_PAUSE);
 views.addEventListener('cut', event => {
   cut = event.detail;
   showPanel('profile');
@@ -128,7 +131,7 @@ server.addEventListener('histogram', ({ detail }) => {
 
 // Health, controls, problems
 
-const controls = new Controls(part('controls'), (name, property, value) => send({ type: 'set', element: name, name: property, value }));
+const controls = new Controls(part('controls'), (name, property, value) => order({ type: 'set', element: name, name: property, value }));
 server.addEventListener('hello', ({ detail }) => {
   outputs = detail.outputs;
   const pictures = outputs.includes('aif') || outputs.includes('planes');
@@ -184,7 +187,7 @@ async function hold(detail) {
   }
   part('freeze').setAttribute('aria-pressed', 'true');
   part('freeze').textContent = 'Go on';
-  part('planes-live').hidden = false;
+  part('planes-live').hidden = !outputs.includes('stacks');
   chooseOverlay();
   if (facts) send(onFrame({ type: 'histogram' }));
   if (cut) askProfile();
@@ -203,7 +206,7 @@ server.addEventListener('frozen', ({ detail }) => {
   if (detail.file) download(`/frozen/${detail.number}/${detail.file}`, detail.file);
   else hold(detail).catch(error => problem(`This frame cannot be held: ${error.message}`));
 });
-part('freeze').addEventListener('click', () => frozen ? thaw() : send({ type: 'freeze' }));
+part('freeze').addEventListener('click', () => frozen ? thaw() : order({ type: 'freeze' }));
 
 // Save and record
 
@@ -226,7 +229,7 @@ for (const button of document.querySelectorAll('#save [data-file]')) {
   button.addEventListener('click', () => {
     part('save').open = false;
     if (frozen) download(`/frozen/${frozen.number}/${button.dataset.file}`, button.dataset.file);
-    else send({ type: 'freeze', file: button.dataset.file });
+    else order({ type: 'freeze', file: button.dataset.file });
   });
 }
 
@@ -249,7 +252,7 @@ server.addEventListener('recording', ({ detail }) => {
 part('record').addEventListener('click', () => {
   const on = part('record').getAttribute('aria-pressed') === 'true';
   mine = on;
-  send({ type: 'record', on: !on });
+  order({ type: 'record', on: !on });
 });
 
 // Panels and keys
@@ -261,7 +264,7 @@ function showPanel(name) {
     part(tab.dataset.panel).hidden = tab.dataset.panel !== name;
   }
   if (name === 'planes') planes.ask();
-  if (name === 'spread' && frozen) send(onFrame({ type: 'histogram' }));
+  if (name === 'spread' && frozen) askOfDepth({ type: 'histogram' });
 }
 for (const tab of tabs) tab.addEventListener('click', () => showPanel(tab.dataset.panel));
 
