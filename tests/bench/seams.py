@@ -4,8 +4,10 @@
 """seams.py FOLDER COUNT SLAB DEPTH...: depth beside the truth, and whether it steps where two slabs of SLAB pictures meet.
 
 FOLDER is what photographs.py made, DEPTH TIFF files that dff-stack --depth wrote of COUNT pictures of it, evenly spread: one that was
-computed in slabs, and one that was computed at once, say, of which the same is told at the same places. The last line of each is the
-median error of all seams together, by how far before and behind them the surface is; what slabs do to depth shows there best.
+computed in slabs, and one that was computed at once, say, of which the same is told at the same places. The last lines of each are the
+median error of all seams together, by how far before and behind them the surface is, and the same of the places midway between seams,
+where slabs do nothing: what slabs do to depth shows there best. Single bins of little texture step anywhere; whether they do so more
+at seams, the shares tell.
 """
 import pathlib
 import sys
@@ -21,6 +23,7 @@ NEAR = slabs.OVERLAP / 2 + 1  # planes from where two slabs meet, which includes
 SHAKE = 4      # pixels by which photographs.py shifts pictures, and one more
 BORDER = 60    # pixels that are left out
 FEWEST = 500   # pixels of a bin
+QUARTER = 0.25  # planes, a step that is not to be seen more often where slabs meet than elsewhere
 
 
 def read(path):
@@ -48,10 +51,11 @@ def steps(truth, error, count):
     return edges[1:], np.abs(np.diff(medians))
 
 
-def around(distance, error):
-    """The median error at each half of a plane from the nearest seam."""
-    places = np.arange(-NEAR - 1, NEAR + 1.5, 0.5)
-    return places, [np.median(error[np.abs(distance - place) < 0.25]) for place in places]
+def around(truth, error, centres, reach):
+    """The median error at each half of a plane from the nearest of the centres."""
+    distance = truth - centres[np.searchsorted((centres[1:] + centres[:-1]) / 2, truth)]
+    places = np.arange(-reach, reach + 0.5, 0.5)
+    return places, np.array([np.median(error[np.abs(distance - place) < 0.25]) for place in places])
 
 
 def tell(truth, depth, count, meet):
@@ -62,9 +66,14 @@ def tell(truth, depth, count, meet):
     places, step = steps(truth, error, count)
     is_near = np.abs(places[:, None] - meet).min(1) < NEAR
     for words, which in (('where slabs meet', is_near), ('elsewhere', ~is_near)):
-        print(f'steps of depth {words}: mean {np.nanmean(step[which]):.3f} planes, greatest {np.nanmax(step[which]):.3f}')
-    nearest = meet[np.searchsorted((meet[1:] + meet[:-1]) / 2, truth)]
-    print('around seams:', ', '.join(f'{place:+.1f}: {value:+.3f}' for place, value in zip(*around(truth - nearest, error))))
+        told = step[which & np.isfinite(step)]
+        print(f'steps of depth {words}: mean {told.mean():.3f} planes, greatest {told.max():.3f}, '
+              f'{100 * np.mean(told > QUARTER):.2f} % of {len(told)} above {QUARTER}')
+    between = np.floor(np.diff(meet).min() - slabs.OVERLAP) / 2  # from midway to where the next seam's planes begin
+    for words, centres, reach in (('seams', meet, NEAR + 1), ('places midway between them', (meet[1:] + meet[:-1]) / 2, between)):
+        places, medians = around(truth, error, centres, reach)
+        print(f'around {words}:', ', '.join(f'{place:+.1f}: {value:+.3f}' for place, value in zip(places, medians)),
+              f'; greatest step {np.abs(np.diff(medians)).max():.3f}')
 
 
 def main(folder, count, size, *files):
