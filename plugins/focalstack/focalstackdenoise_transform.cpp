@@ -118,23 +118,24 @@ void leave_out_bad_pixels(dff::BadPixels &known, const WritableStack &stack, gui
             dff::repair_pixels(plane[c], known.places(), static_cast<int>(components[c].subsampling));
 }
 
-/* Nothing is followed in sweeps of few planes, through planes that do not show what they should, nor in
- * rolling windows, whose planes are of two sweeps; what stands behind is learned anew after them. */
+/* Nothing is followed in sweeps of few planes, nor in rolling windows, whose planes are of two sweeps; what
+ * stands behind is learned anew after them. Nor is a sweep with planes that do not show what they should. */
 void denoise_stack(GstFocalStackDenoiseState &state, const WritableStack &stack, guint64 absent)
 {
     const Wishes wanted = wishes(state);
     const dff::StackView &view = stack.view();
     const bool has_few = view.shape.planes < dff::SweepFollower::fewest_planes;
-    if (!wanted.settings.local_motion || has_few || absent != 0 || !is_one_sweep(view)) {
+    if (!wanted.settings.local_motion || has_few || !is_one_sweep(view)) {
         state.follower.reset();
         state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters);
         return;
     }
     if (!state.follower)
         state.follower = std::make_unique<dff::SweepFollower>(view.shape);
-    const std::span<const uint8_t> held = state.follower->look(view, stack.memory(), wanted.report);
+    const std::span<const uint8_t> held = state.follower->look(view, stack.memory(), wanted.report, absent);
     state.denoiser->denoise(view, stack.memory(), absent, wanted.settings.parameters, held);
-    state.follower->follow(view, stack.memory(), *state.denoiser);
+    if (absent == 0)
+        state.follower->follow(view, stack.memory(), *state.denoiser);
 }
 
 /* What is known goes along with a camera that shakes. Motion is followed where it rests. */

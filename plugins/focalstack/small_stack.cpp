@@ -165,6 +165,12 @@ void SmallStack::take(const StackPictureViews &pictures, unsigned z, unsigned ch
         take_means<uint8_t>(picture, of_component, side, scale, means);
 }
 
+void SmallStack::take(const SmallStack &other, unsigned z)
+{
+    for (unsigned channel = 0; channel < channels(); channel++)
+        other.pictures_[z][channel].copyTo(pictures_[z][channel]);
+}
+
 cv::Mat1f SmallStack::luma(unsigned z) const
 {
     const auto &plane = pictures_[z];

@@ -29,6 +29,9 @@ public:
     void take(const StackPictureViews &pictures);
     void take(const StackPictureViews &pictures, unsigned z, unsigned channel, const cv::Range &rows);
 
+    /* One plane from another sweep of the same shape. */
+    void take(const SmallStack &other, unsigned z);
+
     int factor() const { return factor_; }
     cv::Size size() const { return size_; }
     unsigned planes() const { return shape_.planes; }

@@ -181,11 +181,13 @@ double StillBackground::moved_part() const
 }
 
 /* Sweeps that a place has differed and been steady: the mean of all planes and of the places around. */
-cv::Mat1f StillBackground::halted_sweeps(const cv::Rect &where)
+cv::Mat1f StillBackground::halted_sweeps(const cv::Rect &where, uint64_t absent)
 {
     cv::Mat1f same = cv::Mat1f::zeros(where.size());
     cv::Mat1f differs = cv::Mat1f::zeros(where.size());
     for (size_t z = 0; z < planes_.size(); z++) {
+        if (absent >> z & 1)
+            continue;
         cv::Mat1f of_plane = planes_[z].same(where);
         of_plane += 1.0F;
         of_plane.setTo(0.0F, (found_.wide[z](where) & planes_[z].steady(where)) == 0);
@@ -234,22 +236,33 @@ void StillBackground::learn(const SmallStack &sweep, unsigned z, const cv::Mat1f
 }
 
 const Silhouettes &StillBackground::follow(const StackPictureViews &pictures, SmallStack &sweep,
-                                           const SmallStack &last, const Noise &noise)
+                                           const SmallStack &last, const Noise &noise, uint64_t absent)
 {
+    const auto each_plane = [&](const auto &work) {
+        in_parallel(sweep.planes(), [&](unsigned z) {
+            if (!(absent >> z & 1))
+                work(z);
+        });
+    };
     clear(sweep);
+    if (planes_.empty() && absent != 0)
+        return found_;
     if (planes_.empty()) {
         sweep.take(pictures);
         begin(sweep);
         was_whole_ = false;
         return found_;
     }
-    in_parallel(sweep.planes(), [&](unsigned z) { find_certain(pictures, sweep, z, noise); });
-    for (const Plane &plane : planes_)
-        found_.where |= plane.outline;
+    each_plane([&](unsigned z) { find_certain(pictures, sweep, z, noise); });
+    for (unsigned z = 0; z < sweep.planes(); z++)
+        if (absent >> z & 1)
+            sweep.take(last, z);
+        else
+            found_.where |= planes_[z].outline;
     found_.where = widened(found_.where, reach, sweep.size());
     if (!found_.where.empty()) {
         const cv::Mat1b near = near_objects();
-        in_parallel(sweep.planes(), [&](unsigned z) {
+        each_plane([&](unsigned z) {
             find_perhaps(sweep, z, noise, near);
             look_for_steady(sweep, last, z, noise);
         });
@@ -257,14 +270,16 @@ const Silhouettes &StillBackground::follow(const StackPictureViews &pictures, Sm
     found_.moved = moved_part();
     found_.is_whole = found_.moved > (was_whole_ ? still_whole : whole);
     was_whole_ = found_.is_whole;
-    if (found_.is_whole) {
+    if (found_.is_whole && absent != 0)
+        forget();
+    else if (found_.is_whole)
         begin(sweep);
+    if (found_.is_whole)
         return found_;
-    }
     constexpr int around = 4; /* pixels that the mean of halted_sweeps() looks at */
     const cv::Rect halt_where = widened(found_.where | last_where_, around, sweep.size());
-    const cv::Mat1f halt = halt_where.empty() ? cv::Mat1f() : halted_sweeps(halt_where);
-    in_parallel(sweep.planes(), [&](unsigned z) { learn(sweep, z, halt, halt_where); });
+    const cv::Mat1f halt = halt_where.empty() ? cv::Mat1f() : halted_sweeps(halt_where, absent);
+    each_plane([&](unsigned z) { learn(sweep, z, halt, halt_where); });
     last_where_ = found_.where;
     return found_;
 }

@@ -31,9 +31,10 @@ public:
     using Noise = std::vector<std::array<float, 256>>;
 
     /* Takes the pictures of a stack into `sweep`, compares it with the ones before and learns from it; `last`
-     * is the sweep that it was given before. What it gives is good until the next sweep. */
+     * is the sweep that it was given before. Planes whose bit is set in `absent` do not show what they
+     * should: they have no silhouettes, and tell nothing. What it gives is good until the next sweep. */
     const Silhouettes &follow(const StackPictureViews &pictures, SmallStack &sweep, const SmallStack &last,
-                              const Noise &noise);
+                              const Noise &noise, uint64_t absent = 0);
 
     void forget() { planes_.clear(); }
 
@@ -60,7 +61,7 @@ private:
     void look_for_steady(const SmallStack &sweep, const SmallStack &last, unsigned z, const Noise &noise);
     cv::Mat1b near_objects() const;
     double moved_part() const;
-    cv::Mat1f halted_sweeps(const cv::Rect &where);
+    cv::Mat1f halted_sweeps(const cv::Rect &where, uint64_t absent);
     void learn(const SmallStack &sweep, unsigned z, const cv::Mat1f &halt, const cv::Rect &halt_where);
 
     std::vector<Plane> planes_;

@@ -114,11 +114,11 @@ StillBackground::Noise SweepFollower::small_noise(const DenoiseReport &report) c
 }
 
 std::span<const uint8_t> SweepFollower::look(const StackView &view, std::span<std::byte> memory,
-                                             const DenoiseReport &noise)
+                                             const DenoiseReport &noise, uint64_t absent)
 {
     std::swap(small_, last_);
     noise_ = small_noise(noise);
-    background_.follow(pictures_of(view, memory), small_, last_, noise_);
+    background_.follow(pictures_of(view, memory), small_, last_, noise_, absent);
     hold_tiles();
     return holds_ ? std::span<const uint8_t>(held_) : std::span<const uint8_t>();
 }

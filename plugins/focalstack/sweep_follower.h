@@ -21,9 +21,10 @@ public:
 
     /* Before the sweep is denoised: looks for what moves. Gives the tiles of 8x8 pixels of each plane whose
      * background has to be kept, as StackDenoiser::denoise() takes them: none where nothing moves. `noise` of
-     * each component. */
+     * each component. Nothing is looked for in planes whose bit is set in `absent`, which do not show what
+     * they should: such a sweep cannot be followed, but what stands behind is remembered through it. */
     std::span<const uint8_t> look(const StackView &view, std::span<std::byte> memory,
-                                  const DenoiseReport &noise);
+                                  const DenoiseReport &noise, uint64_t absent = 0);
 
     /* Afterwards: draws what moves where it is in the middle of the sweep, into `memory`. */
     void follow(const StackView &view, std::span<std::byte> memory, StackDenoiser &denoiser);

@@ -242,6 +242,24 @@ TEST_F(FocalStackDenoise, local_motion_goes_on_after_a_lost_plane)
     EXPECT_EQ(seen[0], seen[1]);
 }
 
+TEST_F(FocalStackDenoise, motion_is_followed_in_the_next_sweep_after_a_lost_plane)
+{
+    start("GRAY8", 6);
+    g_object_set(harness_->element, "local-motion", TRUE, nullptr);
+    for (guint64 sweep = 0; sweep < 4; sweep++) {
+        GstBuffer *stack = stack_with_square(info_, sweep);
+        gst_buffer_get_focal_stack_meta(stack)->missing = sweep == 2 ? 2 : 0;
+        gst_harness_push(harness_.get(), stack);
+        gst_buffer_unref(gst_harness_pull(harness_.get()));
+    }
+    GstStructure *taken = nullptr;
+    g_object_get(harness_->element, "stats", &taken, nullptr);
+    const Owned<GstStructure> stats(taken);
+    double moved = 0.0;
+    EXPECT_TRUE(gst_structure_get_double(stats.get(), "moved", &moved));
+    EXPECT_GT(moved, 0.0);
+}
+
 TEST_F(FocalStackDenoise, sweeps_of_few_planes_are_denoised_and_not_followed)
 {
     for (const guint count : {2U, 3U, 4U}) {

@@ -102,13 +102,14 @@ public:
     {
     }
 
-    std::vector<std::byte> operator()(std::vector<std::byte> memory)
+    std::vector<std::byte> operator()(std::vector<std::byte> memory, uint64_t absent = 0)
     {
         const StackView view = scene_.view(memory);
-        const auto held = follower_.look(view, memory, report_);
-        denoiser_.denoise(view, memory, 0, {16, 1.0F}, held);
+        const auto held = follower_.look(view, memory, report_, absent);
+        denoiser_.denoise(view, memory, absent, {16, 1.0F}, held);
         report_ = denoiser_.report();
-        follower_.follow(view, memory, denoiser_);
+        if (absent == 0)
+            follower_.follow(view, memory, denoiser_);
         return memory;
     }
 
@@ -266,6 +267,31 @@ TEST(SweepFollower, what_begins_to_move_leaves_hardly_a_ghost)
                   std::max(0.04, part_off(scene, input, truth, start, 25, 0)))
             << "sweep " << t;
     }
+}
+
+/* It is not followed, and what is behind the object is remembered through it. */
+TEST(SweepFollower, the_sweep_after_one_with_lost_planes_is_as_without_them)
+{
+    const Scene scene(PixelFormat::I420, 3.0);
+    const Path path = flight(20, 60, 4);
+    const auto layout = packed_layout(scene.shape());
+    double off[2] = {};
+    for (const bool is_lost : {false, true}) {
+        Follower follower(scene);
+        for (unsigned sweep = 0; sweep < 6; sweep++) {
+            std::vector<std::byte> memory = scene.sweep(sweep, path);
+            const bool lacks = is_lost && sweep == 4;
+            if (lacks) /* plane 2 shows nothing */
+                std::fill_n(memory.begin() + static_cast<std::ptrdiff_t>(layout[2].offset),
+                            layout[2].stride * height, std::byte{0});
+            memory = follower(std::move(memory), lacks ? 4 : 0);
+            if (sweep == 5)
+                off[is_lost ? 1 : 0] =
+                    part_off(scene, memory, scene.still(sweep, path), path(scene.middle_of(sweep)), 20);
+        }
+    }
+    EXPECT_LT(off[0], 0.03);
+    EXPECT_LT(off[1], off[0] + 0.01);
 }
 
 TEST(SweepFollower, a_cut_shows_the_new_scene_alone)
