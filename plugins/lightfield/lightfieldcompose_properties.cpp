@@ -196,7 +196,8 @@ void install_lens_properties(GObjectClass *klass, const LightFieldSettings &defa
                 "display-calibration", "Display calibration",
                 "For layout=lenticular: path of a JSON or YAML file with the fields of Looking Glass "
                 "displays: screenW, screenH, DPI, pitch, slope, center, and if need be invView, "
-                "flipImageX, flipImageY, flipSubp, viewCone; each a number or {\"value\": number}",
+                "flipImageX, flipImageY, flipSubp, viewCone, each a number or {\"value\": number}, "
+                "subpixelCells and CellPatternMode",
                 "", ready));
     install(property::Pitch,
             g_param_spec_double("pitch", "Pitch",

@@ -20,6 +20,7 @@ from dff_studio.web import parts
 
 MOST_SESSIONS = 8
 KEPT_FROZEN, KEPT_STACKS, KEPT_RECORDINGS = 8, 4, 4
+KEPT_STACK_BYTES = 512 << 20  # of all stacks, where there is more than one: 64 planes of 1920x1080 are 200 MB
 REST = 5  # seconds without anybody after which the source stops
 SILENCE = 5  # seconds without a frame after which the page says so
 PLANES_PAUSE = 1 / 12  # seconds between two planes that are shown, where there is no other picture
@@ -27,17 +28,17 @@ log = logging.getLogger('dff-studio')
 
 
 class Kept:
-    """The last few things, by number. Any thread."""
+    """The last few things, by number, and fewer where they weigh more together than `bound`. Any thread."""
 
-    def __init__(self, most, dropped=lambda thing: None):
-        self.most, self.dropped = most, dropped
+    def __init__(self, most, dropped=lambda thing: None, weigh=lambda thing: 0, bound=0):
+        self.most, self.dropped, self.weigh, self.bound = most, dropped, weigh, bound
         self.things, self.count, self.lock = collections.OrderedDict(), 0, threading.Lock()
 
     def add(self, thing):
         with self.lock:
             self.count += 1
             self.things[self.count] = thing
-            while len(self.things) > self.most:
+            while len(self.things) > self.most or (len(self.things) > 1 and sum(map(self.weigh, self.things.values())) > self.bound):
                 self.dropped(self.things.popitem(last=False)[1])
             return self.count
 
@@ -65,7 +66,8 @@ class Studio:
         self.outputs = [name for name in self.source.sinks if name != 'planes' or self.shows_planes]
         self.outputs += ['stacks'] if self.stacks.pad else []
         self.sessions = []
-        self.frozen, self.kept_stacks = Kept(KEPT_FROZEN), Kept(KEPT_STACKS)
+        self.frozen = Kept(KEPT_FROZEN)
+        self.kept_stacks = Kept(KEPT_STACKS, weigh=lambda stack: stack.buffer.get_size(), bound=KEPT_STACK_BYTES)
         self.recordings = Kept(KEPT_RECORDINGS, saving.Recording.forget)
         self.recording = None
         self.trouble = ''
