@@ -69,8 +69,9 @@ def tell(truth, depth, count, meet):
         told = step[which & np.isfinite(step)]
         print(f'steps of depth {words}: mean {told.mean():.3f} planes, greatest {told.max():.3f}, '
               f'{100 * np.mean(told > QUARTER):.2f} % of {len(told)} above {QUARTER}')
-    between = np.floor(np.diff(meet).min() - slabs.OVERLAP) / 2  # from midway to where the next seam's planes begin
-    for words, centres, reach in (('seams', meet, NEAR + 1), ('places midway between them', (meet[1:] + meet[:-1]) / 2, between)):
+    apart = np.floor(np.diff(meet).min())
+    near, between = min(NEAR + 1, (apart - 1) / 2), (apart - slabs.OVERLAP) / 2  # from midway to where the next seam's planes begin
+    for words, centres, reach in (('seams', meet, near), ('places midway between them', (meet[1:] + meet[:-1]) / 2, between)):
         places, medians = around(truth, error, centres, reach)
         print(f'around {words}:', ', '.join(f'{place:+.1f}: {value:+.3f}' for place, value in zip(places, medians)),
               f'; greatest step {np.abs(np.diff(medians)).max():.3f}')
