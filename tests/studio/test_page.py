@@ -137,14 +137,22 @@ def connect_network():
             subprocess.run(command.split(), check=True)
 
 
+def browser_of(test):
+    """A browser until the test is over."""
+    folder = tempfile.TemporaryDirectory()
+    test.addCleanup(folder.cleanup)
+    browser = Browser(folder.name)
+    test.addCleanup(browser.driver.quit)
+    return browser
+
+
 class Alone(unittest.TestCase):
     """First, before there is any network."""
 
     def test_page_says_that_the_video_finds_no_way(self):
         self.assertFalse(has_network())
-        with tempfile.TemporaryDirectory() as folder, Studio('--launch', rig()) as studio:
-            browser = Browser(folder)
-            self.addCleanup(browser.driver.quit)
+        browser = browser_of(self)
+        with Studio('--launch', rig()) as studio:
             browser.driver.get(f'http://localhost:{studio.port}/')
             browser.until('return /finds no way/.test(state.textContent)')
             connect_network()
@@ -157,22 +165,20 @@ class OtherSources(unittest.TestCase):
     def test_what_a_source_does_not_give_is_told_and_not_asked_for(self):
         connect_network()
         planes = SWEEP.format('is-live=true rate=2')
-        with tempfile.TemporaryDirectory() as folder:
-            browser = Browser(folder)
-            self.addCleanup(browser.driver.quit)
-            for launch, video, absent in ((planes + ' ! focalstackmux ! dffdepth name=depth', 'depth', 'no-picture'),
-                                          (planes + ' ! identity name=planes', 'picture', 'no-depth')):
-                with Studio('--launch', launch) as studio:
-                    browser.driver.get(f'http://localhost:{studio.port}/')
-                    browser.until('return window[arguments[0]].currentTime > 1', video)
-                    hidden = browser.run('return [...document.querySelectorAll(".absent[hidden]")].map(note => note.id)')
-                    self.assertEqual({'no-picture', 'no-depth', 'no-relief'} - set(hidden), {absent})
-                    browser.click_at(0.5, 0.5)
-                    browser.drag(0.1, 0.5, 0.9, 0.5)
-                    browser.press('4')
-                    browser.click('#freeze')
-                    browser.until('return freeze.textContent === "Go on"')
-                    self.assertTrue(browser.run('return problem.hidden'), browser.text('problem'))
+        browser = browser_of(self)
+        for launch, video, absent in ((planes + ' ! focalstackmux ! dffdepth name=depth', 'depth', 'no-picture'),
+                                      (planes + ' ! identity name=planes', 'picture', 'no-depth')):
+            with Studio('--launch', launch) as studio:
+                browser.driver.get(f'http://localhost:{studio.port}/')
+                browser.until('return window[arguments[0]].currentTime > 1', video)
+                hidden = browser.run('return [...document.querySelectorAll(".absent[hidden]")].map(note => note.id)')
+                self.assertEqual({'no-picture', 'no-depth', 'no-relief'} - set(hidden), {absent})
+                browser.click_at(0.5, 0.5)
+                browser.drag(0.1, 0.5, 0.9, 0.5)
+                browser.press('4')
+                browser.click('#freeze')
+                browser.until('return freeze.textContent === "Go on"')
+                self.assertTrue(browser.run('return problem.hidden'), browser.text('problem'))
 
 
 class Page(unittest.TestCase):
