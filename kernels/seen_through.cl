@@ -20,7 +20,7 @@ __kernel void prefer(__global short *cost, __global const float *top, __global c
                      __global const Noise *noise, int from_far, int width, int stride, int planes)
 {
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    const float q = ((0.4f + 0.35f * noise->t) * *median_top + 1.5f + (8.5f - 6.0f * noise->t) * noise->t) * FOCUS_ONE;
+    const float q = ((0.4f + 0.35f * noise->t) * *median_top + 1.5f + 2.5f * noise->t) * FOCUS_ONE;
     for (int x = 0; x < width; x += 16) {
         __global short *cells = cost + row + x;
 #define COST(i) (cells + (size_t)(from_far ? planes - 1 - (i) : (i)) * plane)

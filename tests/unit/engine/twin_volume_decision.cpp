@@ -239,7 +239,7 @@ void prefer_first(std::vector<float> &cost, float rise)
 
 Volume prefer(const Volume &cost, const Volume &top, float median_top, float t, bool from_far)
 {
-    const float q = (0.4f + 0.35f * t) * median_top + 1.5f + (8.5f - 6.0f * t) * t;
+    const float q = (0.4f + 0.35f * t) * median_top + 1.5f + 2.5f * t;
     Volume result = cost;
     for (unsigned y = 0; y < cost.height; y++)
         for (unsigned x = 0; x < cost.width; x++) {
