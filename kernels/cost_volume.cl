@@ -5,7 +5,8 @@
  *
  *     F  = [.7t 2 .7t] / (2 + 1.4t) * focus, along z
  *     T  = max_z F,  S = T - min_z F
- *     C0 = (T0 - F0) / (T0 + q),  q = (.4 + .35t) med T0 + 1.5 + 2.5t: weak texture may speak where there is no noise
+ *     C0 = (T0 - F0) / (T0 + q),  q = (.4 + .35t) med T0 + 1.5 + (8.5 - 6t) t: weak texture may speak where there is no
+ *          noise, and must not where noise is weak: it is blurred least then, and most of it is left in F0
  *     C  = C0 + (1.4 - .4t) (1 - k0)^2 C1,     k0 = S0 / (S0 + 0.5 (med S0 + 2))
  *     u0 = argmin_z C + 4 (1 - k0)^2 C2,       Ci = (Ti - Fi) / (Si + 4 (med S1 + 0.5))
  *
@@ -105,7 +106,7 @@ __kernel void fine_cost(__global const short *focus, __global const float *top, 
 {
     const int z = (int)get_global_id(2), planes = (int)get_global_size(2);
     const size_t row = get_global_id(1) * stride + SIDE, plane = get_global_size(1) * stride;
-    const float floor = ((0.4f + 0.35f * noise->t) * *median_top + 1.5f + 2.5f * noise->t) * FOCUS_ONE;
+    const float floor = ((0.4f + 0.35f * noise->t) * *median_top + 1.5f + (8.5f - 6.0f * noise->t) * noise->t) * FOCUS_ONE;
     const float side = SIDE_WEIGHT(noise), centre = CENTRE_WEIGHT(noise);
     __global short *costs = cost + z * plane + row;
     for (int x = 0; x < width; x += 16) {

@@ -3,8 +3,9 @@
  *
  * Which of two things a cell is of where both are seen: what is thin and near is out of focus in the plane of what lies
  * behind it, which shows through. Planes are taken from the side that is wanted, near or far. A dip is a plane p from which C
- * rises to both sides by q / (T + q), as if focus fell by q of cost_volume.cl, before it falls below C_p again; the first
- * plane may be one, too, and the last. With p the first dip, e the plane after it where C has risen so, and another dip after e:
+ * rises to both sides by q / (T + q), as if focus fell by q = (.4 + .35t) med T + 1.5 + 2.5t, before it falls below
+ * C_p again; the first plane may be one, too, and the last. With p the first dip, e the plane after it where C has risen so, and
+ * another dip after e:
  *
  *     C_z <- max(C_z - C_p, 0) for z before e,  max(C_z, ELSEWHERE) from e on
  *

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <random>
 
 using namespace dff;
@@ -109,6 +110,18 @@ const RowLayout &rows_of(const TestStack &stack, size_t component, uint32_t z)
     return stack.layout[component * stack.shape.planes + z];
 }
 
+/* How much is told of a blank picture whose planes differ by nothing but noise of this deviation, 0..255. */
+double confidence_in_noise(float sigma)
+{
+    TestStack stack({PixelFormat::Rgb, 320, 240, 6});
+    std::mt19937 random(3);
+    std::normal_distribution<float> grain(128.0f, sigma);
+    for (std::byte &sample : stack.memory)
+        sample = static_cast<std::byte>(std::clamp(std::rint(grain(random)), 0.0f, 255.0f));
+    const std::vector<uint8_t> told = compute(stack, true).confidence;
+    return std::accumulate(told.begin(), told.end(), 0.0) / static_cast<double>(told.size());
+}
+
 /* Mean error of the middle of each half, in planes. */
 double error_of(const Result &result, const StackShape &shape, float left, float right)
 {
@@ -184,6 +197,14 @@ TEST(VolumeMethod, what_has_no_texture_is_smooth_and_says_so)
         }
     EXPECT_LT(off, 0.5);
     EXPECT_EQ(result.sparse[size_t{20} * shape.width + 20], result.depth[size_t{20} * shape.width + 20]);
+}
+
+/* Where noise is weak least is blurred away before focus is measured, and most of it is left. */
+TEST(VolumeMethod, weak_noise_tells_no_more_than_strong_noise)
+{
+    const double strong = confidence_in_noise(7.0f);
+    EXPECT_LT(confidence_in_noise(0.8f), 1.2 * strong);
+    EXPECT_LT(confidence_in_noise(1.2f), 1.2 * strong);
 }
 
 TEST(VolumeMethod, stripes_nowhere_in_focus_lie_where_they_are_least_blurred)

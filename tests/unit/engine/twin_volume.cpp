@@ -183,7 +183,7 @@ float median(std::vector<float> values)
 Volume fine_cost(const Volume &focus, float median_top, float t)
 {
     const Volume top = top_of(focus);
-    const float floor = (0.4f + 0.35f * t) * median_top + 1.5f + 2.5f * t;
+    const float floor = (0.4f + 0.35f * t) * median_top + 1.5f + (8.5f - 6.0f * t) * t;
     return like(focus, [&](int x, int y, unsigned z) {
         return (top.at(x, y) - focus.at(x, y, z)) / (top.at(x, y) + floor);
     });
