@@ -6,8 +6,8 @@
 
 namespace dff {
 
-/* What cv::warpPerspective() with INTER_LANCZOS4 | WARP_INVERSE_MAP and BORDER_REFLECT_101 does, in a sixth
- * of its time: first along the columns, then along the rows, with 8 samples each instead of 8x8 at once
+/* What cv::warpPerspective() with INTER_LANCZOS4 | WARP_INVERSE_MAP and BORDER_REFLECT_101 does, in a small
+ * part of its time: first along the columns, then along the rows, with 8 samples each instead of 8x8 at once
  * (Catmull and Smith, SIGGRAPH 1980). `matrix` brings pixels of `warped` onto those of `plane`; positions are
  * rounded to 1/128 of a pixel, and where the picture turns by a degree to 1/25 along columns.
  *
