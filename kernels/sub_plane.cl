@@ -115,4 +115,5 @@ __kernel void even_out(__global const float *placed, __global float *u, int widt
         }
         WIDE(u + (size_t)y * stride + SIDE + x) = sum / weights;
     }
+    mirror_ends(u + (size_t)y * stride + SIDE, width);
 }

@@ -3,22 +3,27 @@
  *
  * One standard deviation of u, in planes:
  *
- *     s = LEVEL OF_NOISE^t (r + .05)^OF_RANGE (f + .03)^OF_FILL (min(m, 2) / (c + .02) + .01)^OF_MARGIN OF_NOTHING^n
+ *     s = LEVEL OF_NOISE^t (r + .05)^OF_RANGE (h + .01)^OF_ROUGHNESS (f + .03)^OF_FILL (p + .02)^OF_PLACE
+ *         (min(m, 2) / (c + .02) + .01)^OF_MARGIN OF_NOTHING^n planes^OF_PLANES
  *
- * r: by how much u differs in the 3x3 cells around, as it does in noise and beside depth edges; f: how far the fill took u
- * from what was decided; c: the mean of the filtered cost C over the planes, and m by how much it is higher, two planes and
+ * of the 3x3 cells around, r: by how much u differs, as it does in noise and beside depth edges; h: how far it is in the mean from
+ * its four neighbours, as it is not on a slant; p: how far in the mean the place between planes was taken from what the matching
+ * decided. f: how far the fill took u from what was decided; c: the mean of the filtered cost C over the planes, and m by how much it is higher, two planes and
  * more away from its least, than there: next to nothing where there is no texture, and little where two surfaces are seen;
  * n = max(0, 1 - 10 w), w the evidence that the fill found around, in parts of the square of the high confidence. The numbers
  * are fitted such that 68 % of pixels lie within s and 95 % within 2 s: README.md says on what.
  */
 #include "low_picture.cl"
 
-#define LOG_LEVEL -0.54f
-#define LOG_OF_NOISE 0.456f
-#define OF_RANGE 0.439f
-#define OF_FILL 0.335f
-#define OF_MARGIN -0.351f
-#define LOG_OF_NOTHING 0.927f
+#define LOG_LEVEL 2.659f
+#define LOG_OF_NOISE 0.491f
+#define OF_RANGE 0.207f
+#define OF_ROUGHNESS 0.296f
+#define OF_FILL 0.451f
+#define OF_PLACE 0.514f
+#define OF_MARGIN -0.343f
+#define LOG_OF_NOTHING 1.103f
+#define OF_PLANES -0.401f
 
 /* log(x) of x > 0, to 0.01: a parabola on the mantissa. */
 INLINE float8 quick_log(float8 x)
@@ -43,6 +48,37 @@ INLINE float8 range_around(__global const float *u, int x, int y, int height, in
     return most - least;
 }
 
+/* h. The sides of u are mirrored. */
+INLINE float8 roughness_around(__global const float *u, int x, int y, int height, int stride)
+{
+    __global const float *rows[5];
+    UNROLL
+    for (int j = 0; j < 5; j++)
+        rows[j] = u + (size_t)reflect(y + j - 2, height) * stride + SIDE + x;
+    float8 sum = 0.0f;
+    for (int j = 1; j <= 3; j++)
+        UNROLL
+        for (int i = -1; i <= 1; i++) {
+            const float8 beside = READ_CELLS(rows[j] + i - 1) + READ_CELLS(rows[j] + i + 1);
+            const float8 above_below = READ_CELLS(rows[j - 1] + i) + READ_CELLS(rows[j + 1] + i);
+            sum += fabs(0.25f * (beside + above_below) - READ_CELLS(rows[j] + i));
+        }
+    return sum * (1.0f / 9);
+}
+
+/* p. The sides of both are mirrored. */
+INLINE float8 place_around(__global const float *decided, __global const float *matched, int x, int y, int height, int stride)
+{
+    float8 sum = 0.0f;
+    for (int j = -1; j <= 1; j++) {
+        const size_t cells = (size_t)reflect(y + j, height) * stride + SIDE + x;
+        UNROLL
+        for (int i = -1; i <= 1; i++)
+            sum += fabs(READ_CELLS(decided + cells + i) - READ_CELLS(matched + cells + i));
+    }
+    return sum * (1.0f / 9);
+}
+
 /* m / (c + .02), m up to 2. */
 INLINE float8 margin_of(__global const short *cells, size_t plane, int planes)
 {
@@ -62,21 +98,24 @@ INLINE float8 margin_of(__global const short *cells, size_t plane, int planes)
     return convert_float8(rival) * (1.0f / COST_ONE) / (mean + 0.02f);
 }
 
-/* deviation = s, its sides mirrored. u: the final one; decided: before the fill; pair: what the fill
+/* deviation = s, its sides mirrored. u: the final one; decided: before the fill; matched: before its place between planes; pair: what the fill
  * solved, its evidence second; cost: filtered. Work-items (1, low height). */
-__kernel void low_deviation(__global const float *u, __global const float *decided, __global const float *pair,
+__kernel void low_deviation(__global const float *u, __global const float *decided, __global const float *matched, __global const float *pair,
                             __global const float *high_confidence, __global const short *cost,
                             __global const Noise *noise, __global float *deviation, int width, int stride, int planes)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);
     const size_t row = (size_t)y * stride + SIDE, plane = (size_t)height * stride;
     const float least = 0.1f * *high_confidence * *high_confidence;
+    const float of_stack = LOG_LEVEL + LOG_OF_NOISE * noise->t + OF_PLANES * log((float)planes);
     for (int x = 0; x < width; x += 8) {
         const float8 nothing = max(1.0f - READ_CELLS(pair + plane + row + x) / max(least, 1e-6f), 0.0f);
         const float8 range = range_around(u, x, y, height, stride);
         const float8 filled = fabs(READ_CELLS(u + row + x) - READ_CELLS(decided + row + x));
-        const float8 power = LOG_LEVEL + LOG_OF_NOISE * noise->t + OF_RANGE * quick_log(range + 0.05f) +
-                             OF_FILL * quick_log(filled + 0.03f) +
+        const float8 rough = roughness_around(u, x, y, height, stride);
+        const float8 place = place_around(decided, matched, x, y, height, stride);
+        const float8 power = of_stack + OF_RANGE * quick_log(range + 0.05f) + OF_ROUGHNESS * quick_log(rough + 0.01f) +
+                             OF_FILL * quick_log(filled + 0.03f) + OF_PLACE * quick_log(place + 0.02f) +
                              OF_MARGIN * quick_log(margin_of(cost + row + x, plane, planes) + 0.01f) +
                              LOG_OF_NOTHING * nothing;
         CELLS(deviation + row + x) = min(quick_exp(power), planes - 1.0f);

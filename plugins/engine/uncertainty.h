@@ -12,8 +12,9 @@ class Uncertainty {
 public:
     Uncertainty(CommandQueue &queue, const StackShape &shape, const LowShape &low);
 
-    /* Before the fill changes the low picture `u`. */
-    void remember(const cl::Buffer &u);
+    /* The low picture `u` as the matching decided it, and as it is before the fill. */
+    void remember_matched(const cl::Buffer &u);
+    void remember_decided(const cl::Buffer &u);
 
     /* `filtered`: costs, low pictures short [z]; `depth`: the map of the final `u`. */
     void run(const cl::Buffer &u, const DepthFill &fill, const cl::Buffer &filtered,
@@ -28,7 +29,7 @@ private:
     StackShape shape_;
     LowShape low_;
     cl::Kernel low_deviation_, upsample_deviation_;
-    cl::Buffer decided_, deviation_, map_;
+    cl::Buffer matched_, decided_, deviation_, map_;
 };
 
 } // namespace dff

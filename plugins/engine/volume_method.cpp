@@ -63,7 +63,7 @@ uint64_t VolumeMethod::memory(const StackShape &shape, const DepthParameters &pa
     const LowShape low(shape, parameters.scale);
     const uint64_t row = uint64_t{sizeof(cl_short)} * static_cast<uint64_t>(low.stride);
     const uint64_t planes = shape.planes;
-    const uint64_t pictures = 15 * planes + 9 + 2 * 35; /* of shorts; one of floats is two */
+    const uint64_t pictures = 15 * planes + 9 + 2 * 36; /* of shorts; one of floats is two */
     const uint64_t pixels = uint64_t{shape.width} * shape.height;
     const uint64_t luma = is_interleaved(shape.format) ? planes * sample_bytes(shape.format) : 0;
     const uint64_t motion = pixels * (luma + 1);
@@ -108,12 +108,14 @@ void VolumeMethod::run(const StackBuffer &stack, DepthCoder &coder, const Wanted
     s.filter.doubt(s.guide.nearer(), s.noise);
     s.matching.run(s.filter.filtered(), s.guide.guide(), s.noise);
     s.doubt.run(s.matching, s.filter.filtered(), s.noise, blur_.step);
-    s.sub_plane.run(s.matching.u(), s.focus, s.pyramid, s.noise, blur_.step);
     if (wanted.uncertainty) {
         if (!s.uncertainty)
             s.uncertainty.emplace(queue_, shape_, s.low);
-        s.uncertainty->remember(s.matching.u());
+        s.uncertainty->remember_matched(s.matching.u());
     }
+    s.sub_plane.run(s.matching.u(), s.focus, s.pyramid, s.noise, blur_.step);
+    if (wanted.uncertainty)
+        s.uncertainty->remember_decided(s.matching.u());
     s.fill.run(s.matching, blur_.t, blur_.step);
     s.guide.run_at(s.matching.u(), s.small, s.noise);
     s.upsampling.run(s.matching.u(), s.guide, s.cost, s.noise, stack, coder, depth);

@@ -387,7 +387,9 @@ void VolumeStages::expect_fill_and_upsampling()
     const twin::Colours guide = read_guide();
     const Volume u = read(matching.u(), 1), confidence = read(matching.confidence(), 1);
     const float blur_step = GetParam().silent ? far_planes : close_planes;
-    uncertainty_stage.remember(matching.u());
+    uncertainty_stage.remember_matched(guide_stage.nearer()); /* for one that differs everywhere */
+    const Volume matched = read(guide_stage.nearer(), 1);
+    uncertainty_stage.remember_decided(matching.u());
     fill_stage.run(matching, noise.t, blur_step);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
     const Volume filled = read(matching.u(), 1);
@@ -395,7 +397,7 @@ void VolumeStages::expect_fill_and_upsampling()
 
     guide_stage.run_at(matching.u(), small_stage, noise_stage);
     upsampling.run(matching.u(), guide_stage, cost_stage, noise_stage, buffer, coder, depth_map);
-    expect_uncertainty(u);
+    expect_uncertainty(u, matched);
     if (shape.format == PixelFormat::I420 || shape.format == PixelFormat::Nv12)
         return; /* its pixels' colours are what the small planes' are: tried above */
     twin::Colours planes{Volume(shape.width, shape.height, shape.planes),
@@ -419,7 +421,7 @@ void VolumeStages::expect_fill_and_upsampling()
 }
 
 /* After the depth map. */
-void VolumeStages::expect_uncertainty(const Volume &decided)
+void VolumeStages::expect_uncertainty(const Volume &decided, const Volume &matched)
 {
     coder.set_encoder(DepthEncoder::index(shape.planes));
     uncertainty_stage.run(matching.u(), fill_stage, filter_stage.filtered(), noise_stage, coder, depth_map);
@@ -427,7 +429,7 @@ void VolumeStages::expect_uncertainty(const Volume &decided)
     const Volume evidence = read_cells<float>(fill_stage.solved(), 1.0f, 1, 1);
     const float high = read_back<float>(queue, fill_stage.high_confidence(), 1)[0];
     const Volume expected =
-        twin::deviation(read(matching.u(), 1), decided, evidence, high,
+        twin::deviation(read(matching.u(), 1), decided, matched, evidence, high,
                         read_shorts(filter_stage.filtered(), shape.planes, 1024), noise.t);
     for (size_t i = 0; i < expected.values.size(); i++)
         ASSERT_NEAR(found.values[i], expected.values[i], 0.03f * expected.values[i] + 1e-3f) << i;

@@ -43,10 +43,11 @@ Volume decide(const Volume &total, float t);
 Volume mean_over_planes(const Volume &cost);
 Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, float high_confidence, float t,
             float blur_step);
-/* One standard deviation of u; `evidence`: what the fill's smoothing left of the squares of the confidence.
+/* One standard deviation of u; `decided`: before the fill; `matched`: before its place between planes;
+ * `evidence`: what the fill's smoothing left of the squares of the confidence.
  */
-Volume deviation(const Volume &u, const Volume &decided, const Volume &evidence, float high_confidence,
-                 const Volume &cost, float t);
+Volume deviation(const Volume &u, const Volume &decided, const Volume &matched, const Volume &evidence,
+                 float high_confidence, const Volume &cost, float t);
 Volume upsample(const Volume &u, const Colours &guide, const Colours &planes, float t, unsigned scale);
 std::vector<uint8_t> upsample_confidence(const Volume &confidence, unsigned width, unsigned height,
                                          unsigned scale);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -321,8 +322,27 @@ Volume fill(const Volume &u, const Volume &confidence, const Colours &guide, flo
     return result;
 }
 
-Volume deviation(const Volume &u, const Volume &decided, const Volume &evidence, float high_confidence,
-                 const Volume &cost, float t)
+namespace {
+
+float mirrored(const Volume &v, int x, int y)
+{
+    return v.at(reflect(x, v.width), reflect(y, v.height));
+}
+
+/* The mean of a value over the 3x3 cells around. */
+float mean_around(int x, int y, const std::function<float(int, int)> &value)
+{
+    float sum = 0.0f;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            sum += value(x + i, y + j);
+    return sum / 9.0f;
+}
+
+} // namespace
+
+Volume deviation(const Volume &u, const Volume &decided, const Volume &matched, const Volume &evidence,
+                 float high_confidence, const Volume &cost, float t)
 {
     Volume result = u;
     const auto last = static_cast<float>(cost.planes - 1);
@@ -344,10 +364,21 @@ Volume deviation(const Volume &u, const Volume &decided, const Volume &evidence,
                 if (std::abs(z - best) > 1)
                     margin = std::min(margin, cost.at(x, y, z) - cost.at(x, y, best));
             const float share = evidence.at(x, y) / (high_confidence * high_confidence);
-            const float power = -0.54f + 0.456f * t + 0.439f * std::log(most - least + 0.05f) +
-                                0.335f * std::log(std::abs(u.at(x, y) - decided.at(x, y)) + 0.03f) -
-                                0.351f * std::log(margin / (mean.at(x, y) + 0.02f) + 0.01f) +
-                                0.927f * std::max(1.0f - 10.0f * share, 0.0f);
+            const float rough = mean_around(x, y, [&](int i, int j) {
+                const float around = mirrored(u, i - 1, j) + mirrored(u, i + 1, j) + mirrored(u, i, j - 1) +
+                                     mirrored(u, i, j + 1);
+                return std::abs(around / 4.0f - mirrored(u, i, j));
+            });
+            const float place = mean_around(x, y, [&](int i, int j) {
+                return std::abs(mirrored(decided, i, j) - mirrored(matched, i, j));
+            });
+            const float power = 2.659f + 0.491f * t + 0.207f * std::log(most - least + 0.05f) +
+                                0.296f * std::log(rough + 0.01f) +
+                                0.451f * std::log(std::abs(u.at(x, y) - decided.at(x, y)) + 0.03f) +
+                                0.514f * std::log(place + 0.02f) -
+                                0.343f * std::log(margin / (mean.at(x, y) + 0.02f) + 0.01f) +
+                                1.103f * std::max(1.0f - 10.0f * share, 0.0f) -
+                                0.401f * std::log(static_cast<float>(cost.planes));
             result.at(x, y) = std::min(std::exp(power), last);
         }
     return result;

@@ -161,7 +161,7 @@ protected:
     void expect_doubt();
     void expect_fill_and_upsampling();
     void expect_confidence_and_sparse_depth();
-    void expect_uncertainty(const Volume &decided);
+    void expect_uncertainty(const Volume &decided, const Volume &matched);
 
     StackShape shape;
     TestStack stack;
