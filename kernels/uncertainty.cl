@@ -6,10 +6,11 @@
  *     s = LEVEL OF_NOISE^t (r + .05)^OF_RANGE (h + .01)^OF_ROUGHNESS (f + .03)^OF_FILL (p + .02)^OF_PLACE
  *         (min(m, 2) / (c + .02) + .01)^OF_MARGIN OF_NOTHING^n planes^OF_PLANES
  *
- * of the 3x3 cells around, r: by how much u differs, as it does in noise and beside depth edges; h: how far it is in the mean from
- * its four neighbours, as it is not on a slant; p: how far in the mean the place between planes was taken from what the matching
- * decided. f: how far the fill took u from what was decided; c: the mean of the filtered cost C over the planes, and m by how much it is higher, two planes and
- * more away from its least, than there: next to nothing where there is no texture, and little where two surfaces are seen;
+ * r, h and p are of the 3x3 cells around. r: by how much u differs there, as it does in noise and beside depth edges; h: how far
+ * u is in the mean from that of its four neighbours, as it is not on a slant; p: how far in the mean u was taken, to its place
+ * between planes, from what the matching decided. f: how far the fill took u from what was decided. c: the mean of the filtered
+ * cost C over the planes, and m by how much it is higher, two planes and more away from its least, than there: next to nothing
+ * where there is no texture, and little where two surfaces are seen.
  * n = max(0, 1 - 10 w), w the evidence that the fill found around, in parts of the square of the high confidence. The numbers
  * are fitted such that 68 % of pixels lie within s and 95 % within 2 s: README.md says on what.
  */
@@ -98,10 +99,10 @@ INLINE float8 margin_of(__global const short *cells, size_t plane, int planes)
     return convert_float8(rival) * (1.0f / COST_ONE) / (mean + 0.02f);
 }
 
-/* deviation = s, its sides mirrored. u: the final one; decided: before the fill; matched: before its place between planes; pair: what the fill
- * solved, its evidence second; cost: filtered. Work-items (1, low height). */
-__kernel void low_deviation(__global const float *u, __global const float *decided, __global const float *matched, __global const float *pair,
-                            __global const float *high_confidence, __global const short *cost,
+/* deviation = s, its sides mirrored. u: the final one; decided: before the fill; matched: before its place between planes;
+ * pair: what the fill solved, its evidence second; cost: filtered. Work-items (1, low height). */
+__kernel void low_deviation(__global const float *u, __global const float *decided, __global const float *matched,
+                            __global const float *pair, __global const float *high_confidence, __global const short *cost,
                             __global const Noise *noise, __global float *deviation, int width, int stride, int planes)
 {
     const int y = (int)get_global_id(1), height = (int)get_global_size(1);

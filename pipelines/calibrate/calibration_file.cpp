@@ -4,9 +4,8 @@
 
 #include "optics/focus_calibration.h"
 #include "optics/settings_file.h"
+#include "whole_file.h"
 
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <opencv2/core/persistence.hpp>
 
@@ -119,16 +118,7 @@ void write_calibration(const std::string &path, const RigCalibration &calibratio
     write_focus(storage, calibration);
     write_light(storage, calibration);
     write_residuals(storage, calibration, board);
-    const std::string text = storage.releaseAndGetString(), part = path + ".part";
-    std::ofstream file(part, std::ios::binary);
-    file << text;
-    file.close();
-    std::error_code error;
-    if (file)
-        std::filesystem::rename(part, path, error);
-    if (!file || error)
-        throw std::runtime_error("The file " + path + " cannot be written" +
-                                 (error ? ": " + error.message() : ""));
+    write_whole_file("The file", path, storage.releaseAndGetString());
 }
 
 RigCalibration read_calibration(const std::string &path)

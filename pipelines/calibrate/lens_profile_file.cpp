@@ -4,10 +4,9 @@
 
 #include "lenssweep/lens/lens_driver.h"
 #include "optics/lens_profile.h"
+#include "whole_file.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <opencv2/core/persistence.hpp>
 #include <stdexcept>
@@ -18,15 +17,7 @@ namespace {
 
 void write(const std::string &path, cv::FileStorage &storage)
 {
-    const std::string part = path + ".part";
-    std::ofstream file(part, std::ios::binary);
-    file << storage.releaseAndGetString();
-    file.close();
-    std::error_code error;
-    if (file)
-        std::filesystem::rename(part, path, error);
-    if (!file || error)
-        throw std::runtime_error("The lens profile " + path + " cannot be written");
+    write_whole_file("The lens profile", path, storage.releaseAndGetString());
 }
 
 bool rises(const std::vector<double> &numbers)

@@ -11,7 +11,6 @@ import time
 import unittest
 
 import numpy as np
-import OpenImageIO as oiio
 
 from gathering import Sweeps
 from sweeps import CMYK, CMYK_COLOURS, SIDE, chunk, exif_saying, exif_taken_at, flat, texture, write, write_pages

@@ -218,7 +218,7 @@ def code_of(depth, least, most):
     return np.nan_to_num(np.clip(code, 1, 65535)).astype(np.uint16)
 
 
-def write_depth(files, path, depth, unit, extent, pixel_um=None):
+def write_depth(files, path, depth, unit, extent, pixel_um):
     """TIFF and EXR hold numbers with a point of the unit, NaN = not known; PNG a code of 16 bits."""
     path = pathlib.Path(path)
     if path.suffix.lower() == '.png':
@@ -230,7 +230,7 @@ def write_depth(files, path, depth, unit, extent, pixel_um=None):
     return write(files.begin(path), pixels, spec, path)
 
 
-def write_depth_code(files, path, depth, unit, extent, pixel_um=None):
+def write_depth_code(files, path, depth, unit, extent, pixel_um):
     least, most = extent
     pixels = code_of(depth, least, most)[:, :, None]
     step = (most - least) / 65534
